@@ -1,0 +1,70 @@
+//! Which format is a file? By its content first, by its ending where the content does not say.
+
+/// The formats that this crate reads and writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Wavefront OBJ.
+    Obj,
+    /// Stanford PLY, ascii and binary.
+    Ply,
+    /// Geomview OFF and its relatives COFF, NOFF, STOFF.
+    Off,
+    /// STL, ascii and binary.
+    Stl,
+    /// glTF 2 as JSON with its buffers beside it or embedded.
+    Gltf,
+    /// glTF 2 as one binary file.
+    Glb,
+    /// A table of numbers as text: XYZ, TXT, CSV.
+    Table,
+    /// A NumPy array.
+    Npy,
+}
+
+impl Format {
+    /// All of them.
+    pub const ALL: [Format; 8] = [
+        Format::Obj,
+        Format::Ply,
+        Format::Off,
+        Format::Stl,
+        Format::Gltf,
+        Format::Glb,
+        Format::Table,
+        Format::Npy,
+    ];
+
+    /// The endings that stand for it, without the dot, in lower case.
+    pub fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Format::Obj => &["obj"],
+            Format::Ply => &["ply"],
+            Format::Off => &["off"],
+            Format::Stl => &["stl"],
+            Format::Gltf => &["gltf"],
+            Format::Glb => &["glb"],
+            Format::Table => &["xyz", "txt", "csv"],
+            Format::Npy => &["npy"],
+        }
+    }
+
+    /// Its name for a person.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Obj => "OBJ",
+            Format::Ply => "PLY",
+            Format::Off => "OFF",
+            Format::Stl => "STL",
+            Format::Gltf => "glTF",
+            Format::Glb => "GLB",
+            Format::Table => "XYZ/CSV",
+            Format::Npy => "NPY",
+        }
+    }
+
+    /// The format of an ending such as `"obj"` or `"PLY"` (no dot).
+    pub fn from_extension(extension: &str) -> Option<Format> {
+        let extension = extension.to_ascii_lowercase();
+        Format::ALL.into_iter().find(|f| f.extensions().contains(&extension.as_str()))
+    }
+}

@@ -1,0 +1,35 @@
+//! Shape files: bytes -> positions -> the same bytes with new positions. Nothing else is touched.
+//!
+//! [`Shape::read`] takes the bytes of a file and gives its positions (and a triangulated view of its faces);
+//! [`Shape::write`] gives the same file with other positions. What the file had besides (vertex order, n-gons, groups,
+//! materials, UVs, colours, comments, unknown elements) is in the result as it was; only normals and tangents turn with
+//! the surface. A shape that did not move gives back its very bytes.
+//!
+//! The crate opens no files and prints nothing: side files (the buffers of a `.gltf`) come from a function that the
+//! caller passes, and go back to the caller in [`Written`].
+//!
+//! | module | what |
+//! |---|---|
+//! | [`mod@format`] | which format are these bytes? |
+//! | `obj`, `ply`, `off`, `stl`, `gltf`, `table`, `npy` | one format each, all behind the trait `Document` |
+//! | `text`, `number` | lines and tokens with their places in the file; numbers read and printed |
+//! | `normals` | a normal turned by a local map's inverse transpose |
+
+mod document;
+mod error;
+pub mod format;
+mod gltf;
+mod normals;
+mod npy;
+mod number;
+mod obj;
+mod off;
+mod ply;
+mod shape;
+mod stl;
+mod table;
+mod text;
+
+pub use error::{Error, ErrorKind, Place};
+pub use format::Format;
+pub use shape::{Fact, Shape, SideFiles, Written};

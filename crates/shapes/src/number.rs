@@ -1,0 +1,133 @@
+//! Numbers in text files: read as `f64`, printed with as many decimals as the file and the size of the shape ask for.
+
+use std::io::Write;
+
+/// The number that a token stands for. `1e5`, `+.5`, `-3.` are numbers; `nan`, `inf` and anything else are `None`.
+pub(crate) fn parse(token: &[u8]) -> Option<f64> {
+    let token =
+        token.strip_prefix(b"+").filter(|t| !t.starts_with(b"-") && !t.starts_with(b"+")).unwrap_or(token);
+    fast_float2::parse(token).ok().filter(|v: &f64| v.is_finite())
+}
+
+/// How many digits a token has behind its decimal point (an exponent moves the point).
+pub(crate) fn decimals(token: &[u8]) -> usize {
+    let exponent_at = token.iter().position(|b| matches!(b, b'e' | b'E')).unwrap_or(token.len());
+    let mantissa = &token[..exponent_at];
+    let behind = mantissa.iter().position(|&b| b == b'.').map_or(0, |dot| mantissa.len() - dot - 1) as i64;
+    let exponent: i64 = std::str::from_utf8(token.get(exponent_at + 1..).unwrap_or(b""))
+        .ok()
+        .and_then(|e| e.parse().ok())
+        .unwrap_or(0);
+    (behind - exponent.clamp(-400, 400)).clamp(0, 400) as usize
+}
+
+/// How positions are printed: with a fixed number of decimals, or, for shapes so large or small that it would take more than 17
+/// digits, in the shortest form that reads back as the same number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Style {
+    Fixed(usize),
+    Shortest,
+}
+
+impl Style {
+    /// As many decimals as the most precise token of the file had, and enough for a ten-millionth of the longest side of the
+    /// positions' box.
+    pub(crate) fn new(decimals_in_file: usize, positions: &[f64], dim: usize) -> Style {
+        let mut longest = 0f64;
+        let mut largest = 0f64;
+        for k in 0..dim {
+            let axis = || positions.iter().skip(k).step_by(dim);
+            let (min, max) =
+                axis().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), &c| (lo.min(c), hi.max(c)));
+            longest = longest.max(max - min);
+            largest = largest.max(max.abs()).max(min.abs());
+        }
+        let for_size = if longest > 0.0 { (7.0 - longest.log10()).ceil() } else { 0.0 };
+        let decimals = (decimals_in_file as f64).max(for_size);
+        let digits_before = if largest > 1.0 { largest.log10().floor() + 1.0 } else { 1.0 };
+        if decimals + digits_before > 17.0 {
+            Style::Shortest
+        } else {
+            Style::Fixed(decimals.max(0.0) as usize)
+        }
+    }
+
+    /// Whether `after` prints as another number than `before`: a coordinate that moved by less than the last printed digit keeps its token.
+    pub(crate) fn differs(self, before: f64, after: f64) -> bool {
+        match self {
+            Style::Fixed(decimals) => (after - before).abs() >= 0.5 * 10f64.powi(-(decimals as i32)),
+            Style::Shortest => after != before,
+        }
+    }
+
+    /// Prints `value`, without trailing zeros and without `-0`.
+    pub(crate) fn print(self, value: f64, out: &mut Vec<u8>) {
+        let start = out.len();
+        match self {
+            Style::Fixed(decimals) => write!(out, "{value:.decimals$}"),
+            Style::Shortest if value != 0.0 && !(1e-5..1e17).contains(&value.abs()) => {
+                write!(out, "{value:e}")
+            }
+            Style::Shortest => write!(out, "{value}"),
+        }
+        .expect("a Vec takes all that is written");
+        if out[start..].contains(&b'.') && !out[start..].contains(&b'e') {
+            while out.last() == Some(&b'0') {
+                out.pop();
+            }
+            if out.last() == Some(&b'.') {
+                out.pop();
+            }
+        }
+        if &out[start..] == b"-0" {
+            out.remove(start);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn printed(style: Style, value: f64) -> String {
+        let mut out = Vec::new();
+        style.print(value, &mut out);
+        String::from_utf8(out).unwrap()
+    }
+
+    #[test]
+    fn reads_what_files_hold() {
+        for (token, value) in
+            [("1", 1.0), ("+.5", 0.5), ("-3.", -3.0), ("1e-3", 1e-3), ("-0", 0.0), ("1E+2", 100.0)]
+        {
+            assert_eq!(parse(token.as_bytes()), Some(value), "{token}");
+        }
+        for token in ["nan", "inf", "-inf", "1e999", "", "+", "+-1", "++1", "1,5", "0x10", "1.2.3"] {
+            assert_eq!(parse(token.as_bytes()), None, "{token}");
+        }
+    }
+
+    #[test]
+    fn counts_decimals() {
+        for (token, count) in [("1", 0), ("1.", 0), ("-0.250", 3), ("1.5e-3", 4), ("1.5e3", 0), ("1e-2", 2)] {
+            assert_eq!(decimals(token.as_bytes()), count, "{token}");
+        }
+    }
+
+    #[test]
+    fn prints_as_precisely_as_the_file_and_the_shape_ask() {
+        assert_eq!(Style::new(6, &[0.0, 1.0], 1), Style::Fixed(7));
+        assert_eq!(Style::new(9, &[0.0, 1.0], 1), Style::Fixed(9));
+        assert_eq!(Style::new(3, &[500_000.0, 500_100.0], 1), Style::Fixed(5));
+        assert_eq!(Style::new(0, &[0.0, 1e-30], 1), Style::Shortest);
+    }
+
+    #[test]
+    fn prints_no_needless_digits() {
+        assert_eq!(printed(Style::Fixed(6), 0.5), "0.5");
+        assert_eq!(printed(Style::Fixed(6), -1e-9), "0");
+        assert_eq!(printed(Style::Fixed(0), 10.0), "10");
+        assert_eq!(printed(Style::Shortest, 1e-30), "1e-30");
+        assert_eq!(printed(Style::Shortest, 100.0), "100");
+    }
+}

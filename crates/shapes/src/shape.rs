@@ -1,0 +1,132 @@
+//! A shape read from a file, and the way back.
+
+use crate::document::{Document, Moved, Parsed};
+use crate::error::Error;
+use crate::format::Format;
+use crate::{gltf, normals, npy, obj, off, ply, stl, table};
+
+/// Gives the bytes of a file beside the shape, by the relative path that the shape names (`"chair.bin"`).
+pub type SideFiles<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + 'a;
+
+/// One thing that a file holds, for a person to read: `("materials", "oak, steel")`.
+pub type Fact = (String, String);
+
+/// A file written anew.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// The file's bytes.
+    pub bytes: Vec<u8>,
+    /// Side files whose content changed too (the buffers of a `.gltf`): the relative path that the *original* file names, and
+    /// its new bytes. `bytes` refers to them by the same path.
+    pub side_files: Vec<(String, Vec<u8>)>,
+}
+
+/// A shape read from a file: positions, a triangulated view of the faces, and everything else as it was.
+///
+/// ```
+/// use neuralmls_shapes::{Format, Shape};
+/// let file = b"# a triangle\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+/// let shape = Shape::read(file.to_vec(), Format::Obj, &|_| Err("no side files here".into())).unwrap();
+/// assert_eq!(shape.faces(), Some(&[[0, 1, 2]][..]));
+/// assert_eq!(shape.write(shape.positions(), None).unwrap().bytes, file);
+/// let mut moved = shape.positions().to_vec();
+/// moved[2] = 0.5;
+/// let written = shape.write(&moved, None).unwrap();
+/// assert!(written.bytes.starts_with(b"# a triangle\nv 0 0 0.5"));
+/// ```
+pub struct Shape {
+    source: Vec<u8>,
+    format: Format,
+    dim: usize,
+    positions: Vec<f64>,
+    faces: Option<Vec<[u32; 3]>>,
+    facts: Vec<Fact>,
+    document: Box<dyn Document>,
+}
+
+impl Shape {
+    /// Reads a file of the given format.
+    ///
+    /// # Errors
+    /// One sentence with the line or byte, for a file that is broken, that uses what this crate does not read, or that has a
+    /// position that is not finite.
+    pub fn read(source: Vec<u8>, format: Format, side_files: &SideFiles<'_>) -> Result<Shape, Error> {
+        let Parsed { dim, positions, faces, facts, document } = match format {
+            Format::Obj => obj::read(&source)?,
+            Format::Ply => ply::read(&source)?,
+            Format::Off => off::read(&source)?,
+            Format::Stl => stl::read(&source)?,
+            Format::Gltf => gltf::read_gltf(&source, side_files)?,
+            Format::Glb => gltf::read_glb(&source, side_files)?,
+            Format::Table => table::read(&source)?,
+            Format::Npy => npy::read(&source)?,
+        };
+        debug_assert_eq!(positions.len() % dim, 0);
+        Ok(Shape { source, format, dim, positions, faces, facts, document })
+    }
+
+    /// The format that it was read as.
+    pub fn format(&self) -> Format {
+        self.format
+    }
+
+    /// Coordinates a position (3, or 1 or 2 for tables of numbers).
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// The positions, `dim` numbers each, in file order.
+    pub fn positions(&self) -> &[f64] {
+        &self.positions
+    }
+
+    /// The faces as triangles, `None` where the file has none.
+    pub fn faces(&self) -> Option<&[[u32; 3]]> {
+        self.faces.as_deref()
+    }
+
+    /// What else is in the file, for a person to read.
+    pub fn facts(&self) -> &[Fact] {
+        &self.facts
+    }
+
+    /// Whether [`Shape::write`] turns normals or tangents, so that passing the local maps is worth it.
+    pub fn has_normals(&self) -> bool {
+        self.document.has_normals()
+    }
+
+    /// The same file with other positions.
+    ///
+    /// `maps` holds a row-major `dim x dim` local map a position, by whose inverse transpose the normals turn. Without
+    /// it, normals turn as the faces around each position do; a cloud without maps keeps its normals.
+    ///
+    /// # Errors
+    /// Where the lengths do not fit the shape, or a position is not finite.
+    pub fn write(&self, positions: &[f64], maps: Option<&[f64]>) -> Result<Written, Error> {
+        let (before, dim) = (&self.positions, self.dim);
+        if positions.len() != before.len() {
+            return Err(Error::argument(format!(
+                "expected {} positions of {dim} coordinates, found {} numbers",
+                before.len() / dim,
+                positions.len()
+            )));
+        }
+        if maps.is_some_and(|maps| maps.len() != before.len() * dim) {
+            return Err(Error::argument(format!("expected a {dim} x {dim} map for each position")));
+        }
+        if let Some(at) = positions.iter().position(|c| !c.is_finite()) {
+            return Err(Error::argument(format!("position {} is not finite", at / dim)));
+        }
+        if positions == before {
+            return Ok(Written { bytes: self.source.clone(), side_files: Vec::new() });
+        }
+        let estimated = match (maps, &self.faces) {
+            (None, Some(faces)) if self.has_normals() && dim == 3 => {
+                Some(normals::maps_from_faces(before, positions, faces))
+            }
+            _ => None,
+        };
+        let moved = Moved { before, after: positions, maps: maps.or(estimated.as_deref()) };
+        self.document.write(&self.source, &moved)
+    }
+}
