@@ -1,0 +1,304 @@
+"""Control points: what is accepted, what is refused and with which sentence, and the files that hold them."""
+
+import json
+import math
+import re
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pytest
+
+from neuralmls.control_points import ControlPoints
+from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
+
+DOCS = Path(__file__).parent.parent / "docs"
+SCHEMA = json.loads((DOCS / "control-points.schema.json").read_text(encoding="utf-8"))
+SEAT = {"name": "seat", "position": [0, 0.45, 0]}
+BACK = {"name": "back", "position": [0, 0.95, -0.2], "target": [0, 0.9, -0.4]}
+
+
+def document(*entries: object, **changes: object) -> dict[str, object]:
+    return {"format": "neuralmls-control-points", "version": 1, "control_points": list(entries)} | changes
+
+
+def written(folder: Path, text: str, ending: str = "json") -> Path:
+    path = folder / f"points.{ending}"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def refusal(path: Path) -> str:
+    with pytest.raises(NeuralMLSError) as caught:
+        ControlPoints.read(path)
+    message = str(caught.value)
+    assert message.startswith(f"{path}: ") and "\n" not in message
+    return message
+
+
+def test_targets_default_to_sources_and_names_to_numbers() -> None:
+    points = ControlPoints([[0, 0], [1, 0]])
+    assert points.names == ("p1", "p2")
+    assert points.targets.tolist() == points.sources.tolist() == [[0, 0], [1, 0]]
+
+
+def test_nothing_can_be_changed_from_outside() -> None:
+    sources = np.zeros((1, 3))
+    points = ControlPoints(sources)
+    sources[:] = 7.0
+    assert points.sources.tolist() == [[0, 0, 0]]
+    with pytest.raises(ValueError, match="read-only"):
+        points.targets[0] = 1.0
+    with pytest.raises(AttributeError):
+        points.names = ("other",)  # type: ignore[misc]
+
+
+@pytest.mark.parametrize("ending", ["json", "csv"])
+@pytest.mark.parametrize("d", [1, 2, 3])
+def test_a_round_trip_gives_the_same_numbers_bit_for_bit(tmp_path: Path, ending: str, d: int) -> None:
+    rng = np.random.default_rng(d)
+    sources = rng.standard_normal((40, d)) * 10.0 ** rng.integers(-300, 300, (40, 1))
+    sources[0, 0], sources[1, 0] = -0.0, math.nextafter(500_000.0, 0.0)
+    names = [f'p "{i}", é\n' if i == 3 and ending == "json" else f"p {i}, é" for i in range(40)]
+    points = ControlPoints(sources, sources[::-1], names)
+    path = tmp_path / f"points.{ending}"
+    points.write(path)
+    back = ControlPoints.read(path)
+    assert back.names == points.names
+    assert back.sources.tobytes() == points.sources.tobytes()
+    assert back.targets.tobytes() == points.targets.tobytes()
+    if ending == "json":
+        jsonschema.validate(json.loads(path.read_text(encoding="utf-8")), SCHEMA)
+
+
+def test_the_documented_examples_are_read_and_valid(tmp_path: Path) -> None:
+    page = (DOCS / "control-points.md").read_text(encoding="utf-8")
+    examples = dict(re.findall(r"```(json|csv)\n(.*?)```", page, flags=re.DOTALL))
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+    jsonschema.validate(json.loads(examples["json"]), SCHEMA)
+    for ending in ("json", "csv"):
+        points = ControlPoints.read(written(tmp_path, examples[ending], ending))
+        assert points.names == ("seat", "back-top")
+        assert points.sources.tolist() == [[0, 0.45, 0], [0, 0.95, -0.2]]
+        assert points.targets.tolist() == [[0, 0.45, 0], [0, 0.9, -0.4]]
+
+
+def test_unknown_keys_are_passed_over(tmp_path: Path) -> None:
+    text = json.dumps(document(SEAT | {"colour": "red"}, BACK, author={"name": "me"}))
+    jsonschema.validate(json.loads(text), SCHEMA)
+    assert len(ControlPoints.read(written(tmp_path, text))) == 2
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        ([SEAT], "expected a JSON object, found a list"),
+        (document(SEAT, format="gltf"), 'format: expected "neuralmls-control-points", found "gltf"'),
+        ({"control_points": [SEAT]}, "format: .* found nothing"),
+        (document(SEAT, version=2), "version: expected 1, found 2"),
+        (document(SEAT, version=True), "version: expected 1, found true"),
+        (document(), r"control_points: expected a list with at least one control point, found \[\]"),
+        (document(control_points={"seat": [0, 0, 0]}), "control_points: expected a list"),
+        (document(SEAT, 3), r"control_points\[1\]: expected an object .* found a number"),
+        (document({"position": [0, 0, 0]}), r"control_points\[0\].name: .* found nothing"),
+        (
+            document({"name": " ", "position": [0, 0, 0]}),
+            r"control_points\[0\].name: expected a text that is not empty",
+        ),
+        (
+            document({"name": "seat"}),
+            r"control_points\[0\].position: expected a list of 1 to 3 numbers, found nothing",
+        ),
+        (
+            document(SEAT, {"name": "back", "position": [1, 2]}),
+            r"control_points\[1\].position: .* 3 numbers, found \[1, 2\]",
+        ),
+        (
+            document(SEAT | {"position": [0, 1, 2, 3]}),
+            r"control_points\[0\].position: expected a list of 1 to 3 numbers",
+        ),
+        (document(SEAT | {"position": [0, "1", 2]}), r'control_points\[0\].position: .* found \[0, "1", 2\]'),
+        (document(SEAT | {"position": [0, True, 2]}), r"control_points\[0\].position"),
+        (
+            document(SEAT | {"target": None}),
+            r"control_points\[0\].target: expected a list of 3 numbers, found null",
+        ),
+        (
+            document(SEAT | {"target": [1, 2]}),
+            r"control_points\[0\].target: expected a list of 3 numbers, found \[1, 2\]",
+        ),
+    ],
+)
+def test_json_of_the_wrong_structure_is_refused_by_us_and_by_the_schema(
+    tmp_path: Path, content: object, says: str
+) -> None:
+    assert re.search(says, refusal(written(tmp_path, json.dumps(content))))
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(content, SCHEMA)
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (document(SEAT, SEAT | {"position": [1, 1, 1]}), "the name 'seat' is given to more than one"),
+        (
+            document(SEAT, BACK, BACK | {"name": "b2"}),
+            r"'back' and 'b2' are at the same place, \(0, 0.95, -0.2\)",
+        ),
+        (document(SEAT | {"position": [0, math.nan, 0]}), "the position of 'seat' is not finite"),
+        (
+            document(SEAT | {"target": [0, math.inf, 0]}),
+            r"the target of 'seat' is not finite: \(0.0, inf, 0.0\)",
+        ),
+        (document(SEAT | {"name": "\ud800"}), "surrogate"),
+    ],
+)
+def test_unusable_control_points_are_refused_by_name(tmp_path: Path, content: object, says: str) -> None:
+    path = written(tmp_path, json.dumps(content))
+    assert re.search(says, refusal(path))
+    with pytest.raises(ControlPointError):
+        ControlPoints.read(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "the file is empty"),
+        (" \n\n", "the file is empty"),
+        ('{"format": \n oops}', "line 2, column 2: not JSON"),
+        ('{"format": "neuralmls-control-points", "version": 1, "control_points": [', "not JSON"),
+        ("[" * 200_000, "not JSON that can be read"),
+        (json.dumps(document(SEAT | {"position": [10**400, 0, 0]})), "a number is too large"),
+        (json.dumps(document(SEAT)).replace("0.45", "9" * 5000), "not JSON that can be read"),
+    ],
+)
+def test_text_that_is_no_json_is_refused_with_its_place(tmp_path: Path, text: str, says: str) -> None:
+    assert says in refusal(written(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("\n", "the file is empty"),
+        ("name,x,y,z\n", "no control points below the header"),
+        ("seat,0,1,2\n", "line 1: expected the header name,x,y,z"),
+        ("name;x;y;z\nseat;0;1;2\n", "line 1: expected the header"),
+        ("name,x,z\nseat,0,1\n", "line 1: expected the header"),
+        ("name,x,x\nseat,0,1\n", "line 1: the column 'x' is there twice"),
+        ("name,x,source_x\nseat,0,1\n", "line 1: expected the header"),
+        ("name,x,y,target_x\nseat,0,1,2\n", "line 1: expected all of the columns target_x,target_y or none"),
+        ("name,x,y\nseat,0,1,2\n", "line 2: expected 3 columns as in the header, found 4"),
+        ("name,x,y\n\n,0,1\n", "line 3: the control point has no name"),
+        ("name,x,y\nseat,0\n", "line 2: expected a number for y of 'seat', found nothing"),
+        ("name,x,y\nseat,0,1_000\n", "line 2: expected a number for y of 'seat', found 1_000"),
+        ("name,x,y\nseat,0,top\n", "line 2: expected a number for y of 'seat', found top"),
+        ("name,x,y\nseat,0,nan\n", "the position of 'seat' is not finite"),
+        ("name,x,target_x\na,0,1\nb,1,\nc,2,3\nc,4,4\n", "the name 'c' is given to more than one"),
+        (
+            "name,x,y,target_x,target_y\na,0,1,5,\n",
+            "line 2: expected a number for target_y of 'a', found nothing",
+        ),
+        ('name,x\n"seat,0\n', "not CSV"),
+    ],
+)
+def test_csv_is_refused_with_its_line(tmp_path: Path, text: str, says: str) -> None:
+    assert says in refusal(written(tmp_path, text, "csv"))
+
+
+def test_csv_as_spreadsheets_write_it_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "points.CSV"
+    path.write_bytes(
+        b"\xef\xbb\xbfNote,Name,source_x, source_y,target_x,target_y\r\n"
+        b'x,"seat, left",1, 2,,\r\n\r\n,back,3,4,5e0,-6\r\n'
+    )
+    points = ControlPoints.read(path)
+    assert points.names == ("seat, left", "back")
+    assert points.sources.tolist() == [[1, 2], [3, 4]]
+    assert points.targets.tolist() == [[1, 2], [5, -6]]
+
+
+def test_files_that_cannot_be_read_are_refused(tmp_path: Path) -> None:
+    assert "there is no such file" in refusal(tmp_path / "none.json")
+    (tmp_path / "latin.csv").write_bytes(b"name,x\ncaf\xe9,1\n")
+    assert "byte 10: expected UTF-8 text, found 0xe9" in refusal(tmp_path / "latin.csv")
+    assert "ends in .json or .csv" in refusal(tmp_path / "points.txt")
+    (tmp_path / "folder.json").mkdir()
+    assert "cannot read" in refusal(tmp_path / "folder.json")
+
+
+def test_writing_leaves_nothing_half_done(tmp_path: Path) -> None:
+    points = ControlPoints([[0.0, 0.0]])
+    with pytest.raises(FileError, match="there is no folder"):
+        points.write(tmp_path / "none" / "points.json")
+    with pytest.raises(FileError, match="ends in .json or .csv"):
+        points.write(tmp_path / "points.yaml")
+    (tmp_path / "folder.csv").mkdir()
+    with pytest.raises(FileError, match="this is a folder"):
+        points.write(tmp_path / "folder.csv")
+    old = written(tmp_path, "old")
+    old.chmod(0o640)
+    link = tmp_path / "link.json"
+    link.symlink_to(old)
+    points.write(link)
+    assert link.is_symlink() and len(ControlPoints.read(old)) == 1
+    assert old.stat().st_mode & 0o777 == 0o640
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["folder.csv", "link.json", "points.json"]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no /dev/full")
+def test_a_full_disk_is_one_sentence() -> None:
+    from neuralmls.files import write_atomically
+
+    with pytest.raises(FileError, match="cannot write: No space left on device"):
+        write_atomically("/dev/full", b"points")
+
+
+@pytest.mark.parametrize(
+    ("sources", "options", "says"),
+    [
+        ([], {}, "no control points"),
+        (np.zeros((0, 3)), {}, "no control points"),
+        ([[0, 0, 0, 0]], {}, "d = 1, 2 or 3"),
+        ([0, 1, 2], {}, "d = 1, 2 or 3"),
+        ([[0, 0], [1]], {}, "table of numbers"),
+        ([["a"]], {}, "table of numbers"),
+        ([[0, 0]], {"targets": [[0, 0, 0]]}, "as many targets as sources"),
+        ([[0, 0]], {"names": ["a", "b"]}, "a name for each of 1"),
+        ([[0, 0], [1, 1]], {"names": ["a", "a"]}, "'a' is given to more than one"),
+        ([[0, 0], [-0.0, 0]], {"names": ["a", "b"]}, "'a' and 'b' are at the same place"),
+        ([[0, np.nan]], {"names": ["a"]}, "position of 'a' is not finite"),
+    ],
+)
+def test_bad_control_points_are_refused(sources: object, options: dict[str, object], says: str) -> None:
+    with pytest.raises(ControlPointError, match=says):
+        ControlPoints(sources, **options)  # type: ignore[arg-type]
+
+
+def test_moved_adds_to_the_targets_of_the_named_only() -> None:
+    points = ControlPoints([[0, 0], [1, 0]], [[0, 1], [1, 1]], ["seat", "back"])
+    moved = points.moved({"back": (0.5, -1)})
+    assert moved.targets.tolist() == [[0, 1], [1.5, 0]]
+    assert moved.sources.tolist() == points.sources.tolist()
+    assert points.targets.tolist() == [[0, 1], [1, 1]]
+
+
+def test_moving_an_unknown_control_point_names_the_nearest() -> None:
+    points = ControlPoints([[0, 0], [1, 0]], names=["seat", "back"])
+    with pytest.raises(ArgumentError, match="no control point 'bakc'; the nearest name is 'back'"):
+        points.moved({"bakc": (0, 0)})
+    with pytest.raises(ArgumentError, match="'seat' needs 2 finite numbers"):
+        points.moved({"seat": (0, 0, 0)})
+    with pytest.raises(ArgumentError, match="'seat' needs 2 finite numbers"):
+        points.moved({"seat": (0, math.nan)})
+
+
+def test_control_points_far_outside_are_named() -> None:
+    box = [[0, 0, 0], [1, 2, 1]]
+    near = ControlPoints([[0.5, 1, 0.5], [0, -1, 0]], [[0.5, 9, 0.5], [0, -1, 0]])
+    assert near.check(box) == []
+    far = ControlPoints([[500, 1000, 500], [0, 1, 0]], [[500, 1000, 500], [0, 4000, 0]], ["seat", "back"])
+    position, target = far.check(box)
+    assert "position of 'seat' lies" in position and "longest side is 2:" in position
+    assert "target of 'seat' and 'back' lies" in target and "3998 units" in target
+    with pytest.raises(ControlPointError, match="3 coordinates each, but the shape has 2"):
+        far.check([[0, 0], [1, 1]])
