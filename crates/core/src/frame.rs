@@ -1,0 +1,95 @@
+//! Coordinates relative to a box: centred on it, and divided by half of its longest side.
+//!
+//! Computed in double precision before anything is rounded to single, so that a shape half a million metres from the origin
+//! keeps its millimetres.
+
+use crate::error::{check_points, Error};
+
+/// `x_normalised = (x - centre) / half`: the box's longest side becomes [-1, 1].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// The box's centre; zeros beyond the dimension.
+    pub centre: [f64; 3],
+    /// Half of the box's longest side; > 0.
+    pub half: f64,
+}
+
+impl Frame {
+    /// Coordinates as they are.
+    pub const IDENTITY: Frame = Frame { centre: [0.0; 3], half: 1.0 };
+
+    /// The frame of the box from `min` to `max`.
+    ///
+    /// # Errors
+    /// Where the box is not finite, upside down, or a single place.
+    pub fn of_box(min: &[f64], max: &[f64]) -> Result<Frame, Error> {
+        let dim = min.len();
+        check_points("bounds", min, dim)?;
+        check_points("bounds", max, dim)?;
+        if max.len() != dim || min.iter().zip(max).any(|(lo, hi)| lo > hi) {
+            return Err(Error::argument("bounds", "expected a smallest and a largest corner"));
+        }
+        let mut frame = Frame { centre: [0.0; 3], half: 0.0 };
+        for k in 0..dim {
+            frame.centre[k] = min[k] + 0.5 * (max[k] - min[k]);
+            frame.half = frame.half.max(0.5 * (max[k] - min[k]));
+        }
+        if frame.half > 0.0 && frame.half.is_finite() && (1.0 / frame.half).is_finite() {
+            Ok(frame)
+        } else {
+            Err(Error::argument(
+                "bounds",
+                "all points are in one place, so that there is no size to measure by",
+            ))
+        }
+    }
+
+    /// The frame of the box around `points`; around one place, a frame of half a side of 1 there.
+    pub fn around(points: &[f64], dim: usize) -> Frame {
+        let mut min = [f64::INFINITY; 3];
+        let mut max = [f64::NEG_INFINITY; 3];
+        for point in points.chunks_exact(dim) {
+            for (k, &c) in point.iter().enumerate() {
+                min[k] = min[k].min(c);
+                max[k] = max[k].max(c);
+            }
+        }
+        if points.is_empty() {
+            return Frame::IDENTITY;
+        }
+        Frame::of_box(&min[..dim], &max[..dim]).unwrap_or_else(|_| {
+            let mut centre = [0.0; 3];
+            centre[..dim].copy_from_slice(&min[..dim]);
+            Frame { centre, half: 1.0 }
+        })
+    }
+
+    /// A point of the world in this frame.
+    pub fn enter<const D: usize>(&self, x: &[f64]) -> [f64; D] {
+        std::array::from_fn(|k| (x[k] - self.centre[k]) / self.half)
+    }
+
+    /// Points of the world in this frame.
+    pub fn enter_all(&self, points: &[f64], dim: usize) -> Vec<f64> {
+        points.iter().enumerate().map(|(at, c)| (c - self.centre[at % dim]) / self.half).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_side_becomes_two() {
+        let frame = Frame::of_box(&[500_000.0, 0.0], &[500_004.0, 2.0]).unwrap();
+        assert_eq!(frame.enter::<2>(&[500_004.0, 2.0]), [1.0, 0.5]);
+        assert_eq!(frame.enter_all(&[500_000.0, 1.0], 2), [-1.0, 0.0]);
+    }
+
+    #[test]
+    fn a_box_without_size_is_refused_by_name() {
+        let error = Frame::of_box(&[1.0; 3], &[1.0; 3]).unwrap_err();
+        assert!(error.to_string().contains("one place"), "{error}");
+        assert_eq!(Frame::around(&[7.0, 7.0], 1), Frame { centre: [7.0, 0.0, 0.0], half: 1.0 });
+    }
+}

@@ -1,0 +1,14 @@
+//! The paper's weights: a small network, trained on nothing but the control points, says how much each of them matters at a place.
+//!
+//! MLP `d -> width -> width -> m`, ReLU, trained full-batch with Adam to give control point i the class i. Its outputs are the
+//! logits. Shechter et al. 2022, section 3.
+
+mod adam;
+mod features;
+mod gemm;
+mod initialise;
+mod network;
+mod train;
+
+pub use network::{Layer, Network};
+pub use train::{fit, train, Fit, Schedule, Training};

@@ -1,0 +1,56 @@
+//! The linear part of an affine map.
+//!
+//! Least squares asks for `M = C^T P^-1`, `P = sum w_i (p_i - p*)(p_i - p*)^T`, which does not exist where the weighted control
+//! points do not span the space. `M = G + (C^T - G P)(P + 1e-9 |P| I)^-1` agrees with it to 1e-9 where it exists, gives
+//! the best map in the span and G on the rest where it does not, and goes from one to the other continuously.
+
+use super::matrix::{norm, Matrix};
+use super::moments::Moments;
+use super::ANCHOR_WEIGHT;
+
+pub(super) fn linear<const D: usize>(moments: &Moments<D>, g: &Matrix<D>) -> Matrix<D> {
+    let (pp, pq) = (&moments.pp, &moments.pq);
+    let size = norm(pp);
+    if !(size > 0.0 && size.is_finite()) {
+        return *g;
+    }
+    let regular: Matrix<D> = std::array::from_fn(|r| {
+        std::array::from_fn(|c| pp[r][c] / size + if r == c { ANCHOR_WEIGHT } else { 0.0 })
+    });
+    let Some(lower) = cholesky(&regular) else { return *g };
+    std::array::from_fn(|r| {
+        let residual: [f64; D] =
+            std::array::from_fn(|c| (pq[c][r] - (0..D).map(|k| g[r][k] * pp[k][c]).sum::<f64>()) / size);
+        // The matrix is symmetric: a row of X S = residual is a column of S X^T = residual^T.
+        let row = solve(&lower, residual);
+        std::array::from_fn(|c| g[r][c] + row[c])
+    })
+}
+
+/// `L` with `L L^T = s`; `None` where rounding has made `s` indefinite.
+fn cholesky<const D: usize>(s: &Matrix<D>) -> Option<Matrix<D>> {
+    let mut l = [[0.0; D]; D];
+    for r in 0..D {
+        for c in 0..=r {
+            let rest = s[r][c] - (0..c).map(|k| l[r][k] * l[c][k]).sum::<f64>();
+            if r != c {
+                l[r][c] = rest / l[c][c];
+            } else if rest > 0.0 {
+                l[r][r] = rest.sqrt();
+            } else {
+                return None;
+            }
+        }
+    }
+    Some(l)
+}
+
+fn solve<const D: usize>(l: &Matrix<D>, mut b: [f64; D]) -> [f64; D] {
+    for r in 0..D {
+        b[r] = (b[r] - (0..r).map(|k| l[r][k] * b[k]).sum::<f64>()) / l[r][r];
+    }
+    for r in (0..D).rev() {
+        b[r] = (b[r] - (r + 1..D).map(|k| l[k][r] * b[k]).sum::<f64>()) / l[r][r];
+    }
+    b
+}

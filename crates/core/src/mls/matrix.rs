@@ -1,0 +1,30 @@
+//! The little linear algebra of D x D matrices, D = 1, 2 or 3.
+
+/// Row-major `D x D` matrix.
+pub type Matrix<const D: usize> = [[f64; D]; D];
+
+pub fn identity<const D: usize>() -> Matrix<D> {
+    std::array::from_fn(|r| std::array::from_fn(|c| f64::from(u8::from(r == c))))
+}
+
+pub fn apply<const D: usize>(m: &Matrix<D>, v: &[f64; D]) -> [f64; D] {
+    std::array::from_fn(|r| (0..D).map(|c| m[r][c] * v[c]).sum())
+}
+
+pub fn scaled<const D: usize>(m: &Matrix<D>, s: f64) -> Matrix<D> {
+    m.map(|row| row.map(|e| e * s))
+}
+
+pub fn norm<const D: usize>(m: &Matrix<D>) -> f64 {
+    // Scaled first, so that entries of 1e-200 keep their norm.
+    let largest = m.iter().flatten().fold(0.0, |l: f64, e| l.max(e.abs()));
+    if largest == 0.0 || !largest.is_finite() {
+        return largest;
+    }
+    largest * m.iter().flatten().map(|e| (e / largest) * (e / largest)).sum::<f64>().sqrt()
+}
+
+/// `tr(A B)`.
+pub fn trace_of_product<const D: usize>(a: &Matrix<D>, b: &Matrix<D>) -> f64 {
+    (0..D).map(|r| (0..D).map(|c| a[r][c] * b[c][r]).sum::<f64>()).sum()
+}

@@ -1,0 +1,101 @@
+//! Moving least squares: weights and moved control points give each place its own rigid, similarity or affine map.
+//!
+//! `y = M (x - p*) + q*`, with the weighted centroids `p* = sum w_i p_i`, `q* = sum w_i q_i`, and `M` the map of its kind
+//! that minimises `sum w_i |M (p_i - p*) - (q_i - q*)|^2`. Schaefer, McPhail, Warren 2006 (2D); Zhu, Gortler 2007 (3D).
+//! What differs from them: `M` is always a rotation (never a reflection), and where the weighted control points do not
+//! determine it, it follows the one map of its kind that fits all control points with equal weights ([`Anchor`]).
+
+mod affine;
+mod matrix;
+mod moments;
+mod rotation;
+mod similarity;
+
+pub use matrix::Matrix;
+pub use rotation::best_rotation;
+
+use crate::softmax::Dominant;
+use moments::Moments;
+
+/// How much the global map counts against the local one, relative to its size: enough to decide what is open, too little to
+/// be seen where anything is determined.
+pub const ANCHOR_WEIGHT: f64 = 1e-9;
+
+/// The family of maps that the local map is chosen from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Transform {
+    /// Rotation and translation: lengths and angles survive.
+    Rigid,
+    /// Rotation, one scale, translation: angles survive.
+    Similarity,
+    /// Any linear map and translation.
+    Affine,
+}
+
+/// The moved control points, with what is the same for every point of a shape: the map that fits all of them with equal
+/// weights.
+pub struct Handles<'a, const D: usize> {
+    p: &'a [[f64; D]],
+    q: &'a [[f64; D]],
+    transform: Transform,
+    anchor: Anchor<D>,
+}
+
+/// The global fit: what a local map follows where the control points around it leave something open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Anchor<const D: usize> {
+    /// The best rotation of all control points; the identity where even they leave it open.
+    pub rotation: Matrix<D>,
+    /// The best scale (similarity); 1 where there is none.
+    pub scale: f64,
+    /// The best linear map (affine).
+    pub linear: Matrix<D>,
+}
+
+/// Where a point goes, and by which map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Local<const D: usize> {
+    /// `y - x`.
+    pub displacement: [f64; D],
+    /// `M`.
+    pub map: Matrix<D>,
+}
+
+impl<'a, const D: usize> Handles<'a, D> {
+    /// Fits the anchor. `p` and `q` hold the same number of control points, at least one.
+    pub fn new(p: &'a [[f64; D]], q: &'a [[f64; D]], transform: Transform) -> Self {
+        debug_assert!(!p.is_empty() && p.len() == q.len());
+        let equal = vec![1.0; p.len()];
+        let dominant = Dominant { index: 0, second: 1.0 / p.len() as f64 };
+        let moments = Moments::new(p, q, &equal, dominant);
+        let rotation = rotation::anchored(&moments.pq, &matrix::identity());
+        let scale = similarity::scale(&moments, &rotation, 1.0);
+        let linear = affine::linear(&moments, &rotation);
+        Handles { p, q, transform, anchor: Anchor { rotation, scale, linear } }
+    }
+
+    /// The map that fits all control points with equal weights.
+    pub fn anchor(&self) -> &Anchor<D> {
+        &self.anchor
+    }
+
+    /// Where the point `x` goes, whose weights `relative` and `dominant` are as [`crate::softmax::relative_weights`] gives them.
+    pub fn deform(&self, x: &[f64; D], relative: &[f64], dominant: Dominant) -> Local<D> {
+        let moments = Moments::new(self.p, self.q, relative, dominant);
+        let map = match self.transform {
+            Transform::Rigid => rotation::anchored(&moments.pq, &self.anchor.rotation),
+            Transform::Similarity => {
+                let rotation = rotation::anchored(&moments.pq, &self.anchor.rotation);
+                let scale = similarity::scale(&moments, &rotation, self.anchor.scale);
+                matrix::scaled(&rotation, scale)
+            }
+            Transform::Affine => affine::linear(&moments, &self.anchor.linear),
+        };
+        let arm: [f64; D] = std::array::from_fn(|k| x[k] - moments.p_mean[k]);
+        let turned = matrix::apply(&map, &arm);
+        Local { displacement: std::array::from_fn(|k| turned[k] - arm[k] + moments.shift[k]), map }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,59 @@
+//! The weighted moments of the control points around one point, relative to its dominant control point.
+//!
+//! With k the dominant one, `a_i = p_i - p_k`, `b_i = q_i - q_k` and r_i the weights relative to the second-largest, w_2:
+//!
+//! `C / w_2 = sum_{i != k} r_i a_i b_i^T - w_2 (sum r_i a_i)(sum r_i b_i)^T`,
+//!
+//! exactly. The plain sum `sum w_i (p_i - p*)(q_i - q*)^T` loses all its digits when one weight is close to 1; this one
+//! keeps them however small the temperature.
+
+use super::matrix::Matrix;
+use crate::softmax::Dominant;
+
+/// Moments of one point, the second ones divided by its second-largest weight.
+pub(super) struct Moments<const D: usize> {
+    /// `p*`.
+    pub p_mean: [f64; D],
+    /// `q* - p*`.
+    pub shift: [f64; D],
+    /// `C / w_2`, `C = sum w_i (p_i - p*)(q_i - q*)^T`.
+    pub pq: Matrix<D>,
+    /// The same of p with itself.
+    pub pp: Matrix<D>,
+}
+
+impl<const D: usize> Moments<D> {
+    pub(super) fn new(p: &[[f64; D]], q: &[[f64; D]], relative: &[f64], dominant: Dominant) -> Self {
+        let Dominant { index: k, second } = dominant;
+        let (mut sum_a, mut sum_b, mut sum_shift) = ([0.0; D], [0.0; D], [0.0; D]);
+        let (mut pq, mut pp) = ([[0.0; D]; D], [[0.0; D]; D]);
+        for (i, &r) in relative.iter().enumerate() {
+            if i == k || r == 0.0 {
+                continue;
+            }
+            let a: [f64; D] = std::array::from_fn(|c| p[i][c] - p[k][c]);
+            let b: [f64; D] = std::array::from_fn(|c| q[i][c] - q[k][c]);
+            for c in 0..D {
+                sum_a[c] += r * a[c];
+                sum_b[c] += r * b[c];
+                sum_shift[c] += r * (b[c] - a[c]);
+                for d in 0..D {
+                    pq[c][d] += r * a[c] * b[d];
+                    pp[c][d] += r * a[c] * a[d];
+                }
+            }
+        }
+        for c in 0..D {
+            for d in 0..D {
+                pq[c][d] -= second * sum_a[c] * sum_b[d];
+                pp[c][d] -= second * sum_a[c] * sum_a[d];
+            }
+        }
+        Moments {
+            p_mean: std::array::from_fn(|c| p[k][c] + second * sum_a[c]),
+            shift: std::array::from_fn(|c| (q[k][c] - p[k][c]) + second * sum_shift[c]),
+            pq,
+            pp,
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! The rotation nearest to a moment matrix.
+//!
+//! `R = argmax over SO(d) of tr(R (C / |C| + 1e-9 G^T))`: a rotation, never a reflection, whatever the sign of det C; it does
+//! not depend on the scale of the weights; and where C lacks rank, what it leaves open follows the anchor G.
+//!
+//! 3D: Horn, "Closed-form solution of absolute orientation using unit quaternions", 1987: the best quaternion is the
+//! eigenvector of a symmetric 4 x 4 matrix for its largest eigenvalue, which cyclic Jacobi rotations find to full
+//! precision relative to the gap, with no special cases.
+
+use super::matrix::{norm, Matrix};
+use super::ANCHOR_WEIGHT;
+
+/// The rule: the rotation that `moment` (C, at any scale) asks for, with the anchor `g` where it leaves something open.
+pub(super) fn anchored<const D: usize>(moment: &Matrix<D>, g: &Matrix<D>) -> Matrix<D> {
+    let size = norm(moment);
+    let inverse = if size > 0.0 { 1.0 / size } else { 0.0 };
+    let inverse = if inverse.is_finite() { inverse } else { 0.0 };
+    let target =
+        std::array::from_fn(|r| std::array::from_fn(|c| moment[r][c] * inverse + ANCHOR_WEIGHT * g[c][r]));
+    best_rotation(&target)
+}
+
+/// The rotation `R` that maximises `tr(R C)`.
+pub fn best_rotation<const D: usize>(c: &Matrix<D>) -> Matrix<D> {
+    let mut r = [[1.0; D]; D];
+    match D {
+        1 => {}
+        2 => {
+            let (cos, sin) = (c[0][0] + c[1][1], c[0][1] - c[1][0]);
+            let length = cos.hypot(sin);
+            let (cos, sin) = if length > 0.0 { (cos / length, sin / length) } else { (1.0, 0.0) };
+            (r[0][0], r[0][1], r[1][0], r[1][1]) = (cos, -sin, sin, cos);
+        }
+        _ => {
+            let full = of_quaternion(&largest_eigenvector(horn(c)));
+            for (row, full) in r.iter_mut().zip(full) {
+                row.copy_from_slice(&full[..D]);
+            }
+        }
+    }
+    r
+}
+
+/// Horn's matrix: `tr(R C) = u^T N u` for the rotation of the unit quaternion `u = (w, x, y, z)`.
+fn horn<const D: usize>(s: &Matrix<D>) -> [[f64; 4]; 4] {
+    let (yz, zx, xy) = (s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0]);
+    let (pxy, pyz, pzx) = (s[0][1] + s[1][0], s[1][2] + s[2][1], s[2][0] + s[0][2]);
+    [
+        [s[0][0] + s[1][1] + s[2][2], yz, zx, xy],
+        [yz, s[0][0] - s[1][1] - s[2][2], pxy, pzx],
+        [zx, pxy, s[1][1] - s[0][0] - s[2][2], pyz],
+        [xy, pzx, pyz, s[2][2] - s[0][0] - s[1][1]],
+    ]
+}
+
+/// Cyclic Jacobi: plane rotations that zero the off-diagonal, accumulated.
+fn largest_eigenvector(mut n: [[f64; 4]; 4]) -> [f64; 4] {
+    /// Jacobi converges quadratically: a 4 x 4 matrix is done after 4 to 6 sweeps.
+    const MOST_SWEEPS: usize = 24;
+    let mut vectors = [[0.0; 4]; 4];
+    for (i, row) in vectors.iter_mut().enumerate() {
+        row[i] = 1.0;
+    }
+    for _ in 0..MOST_SWEEPS {
+        let mut rotated = false;
+        for i in 0..3 {
+            for j in i + 1..4 {
+                let off = n[i][j];
+                // Too small to change either diagonal entry, twice over.
+                if off.abs() <= 1e-18 * (n[i][i].abs() + n[j][j].abs()) {
+                    continue;
+                }
+                rotated = true;
+                let theta = (n[j][j] - n[i][i]) / (2.0 * off);
+                let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
+                let cos = 1.0 / t.hypot(1.0);
+                let sin = t * cos;
+                n[i][i] -= t * off;
+                n[j][j] += t * off;
+                n[i][j] = 0.0;
+                n[j][i] = 0.0;
+                for k in 0..4 {
+                    if k != i && k != j {
+                        let (ki, kj) = (n[k][i], n[k][j]);
+                        n[k][i] = cos * ki - sin * kj;
+                        n[k][j] = sin * ki + cos * kj;
+                        n[i][k] = n[k][i];
+                        n[j][k] = n[k][j];
+                    }
+                    let (vi, vj) = (vectors[k][i], vectors[k][j]);
+                    vectors[k][i] = cos * vi - sin * vj;
+                    vectors[k][j] = sin * vi + cos * vj;
+                }
+            }
+        }
+        if !rotated {
+            break;
+        }
+    }
+    let mut largest = 0;
+    for i in 1..4 {
+        if n[i][i] > n[largest][largest] {
+            largest = i;
+        }
+    }
+    let u: [f64; 4] = std::array::from_fn(|k| vectors[k][largest]);
+    let length = u.iter().map(|c| c * c).sum::<f64>().sqrt();
+    u.map(|c| c / length)
+}
+
+fn of_quaternion(&[w, x, y, z]: &[f64; 4]) -> [[f64; 3]; 3] {
+    [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+        [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+        [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+    ]
+}
