@@ -2,6 +2,59 @@
 
 use std::ops::Range;
 
+/// A line of a text file.
+#[derive(Clone, Copy)]
+pub(crate) struct Line<'a> {
+    /// Counted from 1.
+    pub number: u64,
+    /// Where it starts in the file.
+    pub start: usize,
+    /// Its bytes, without the line ending.
+    pub bytes: &'a [u8],
+}
+
+/// The lines of a file; they end in LF, CRLF or CR. A UTF-8 byte order mark at the start belongs to no line.
+pub(crate) struct Lines<'a> {
+    source: &'a [u8],
+    at: usize,
+    number: u64,
+}
+
+impl<'a> Lines<'a> {
+    pub(crate) fn new(source: &'a [u8]) -> Self {
+        Lines { source, at: bom_length(source), number: 0 }
+    }
+
+    /// The offset behind the lines given so far.
+    pub(crate) fn offset(&self) -> usize {
+        self.at
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = Line<'a>;
+
+    #[inline]
+    fn next(&mut self) -> Option<Line<'a>> {
+        let rest = self.source.get(self.at..).filter(|rest| !rest.is_empty())?;
+        self.number += 1;
+        let start = self.at;
+        let length = memchr::memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
+        self.at += length + if rest[length..].starts_with(b"\r\n") { 2 } else { 1 };
+        self.at = self.at.min(self.source.len());
+        Some(Line { number: self.number, start, bytes: &rest[..length] })
+    }
+}
+
+/// The length of the UTF-8 byte order mark at the start of a file: 3, or 0 where there is none.
+pub(crate) fn bom_length(source: &[u8]) -> usize {
+    if source.starts_with(b"\xef\xbb\xbf") {
+        3
+    } else {
+        0
+    }
+}
+
 /// The tokens of `line` (runs of anything but ASCII white space), as ranges of the file when `start` is the line's offset in it.
 pub(crate) fn tokens(line: &[u8], start: usize) -> impl Iterator<Item = Range<usize>> + '_ {
     let mut at = 0;
@@ -51,5 +104,31 @@ impl<'a> Patcher<'a> {
     pub(crate) fn finish(mut self) -> Vec<u8> {
         self.out.extend_from_slice(&self.source[self.copied..]);
         self.out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_end_in_lf_crlf_or_cr() {
+        let source = b"\xef\xbb\xbfa\nb\r\n\rc";
+        let lines: Vec<_> = Lines::new(source).map(|l| (l.number, l.start, l.bytes)).collect();
+        assert_eq!(lines, [(1, 3, &b"a"[..]), (2, 5, b"b"), (3, 8, b""), (4, 9, b"c")]);
+    }
+
+    #[test]
+    fn a_patched_file_differs_in_the_patched_ranges_only() {
+        let mut patcher = Patcher::new(b"v 1 2 3");
+        patcher.replace(4..5).extend_from_slice(b"20");
+        patcher.replace(7..7).push(b'!');
+        assert_eq!(patcher.finish(), b"v 1 20 3!");
+    }
+
+    #[test]
+    fn a_quoted_token_is_short_and_printable() {
+        assert_eq!(quote(b"a\x1b\xff"), "'a\\u{1b}\u{fffd}'");
+        assert_eq!(quote(&[b'x'; 99]).len(), 32 + 5);
     }
 }
