@@ -1,0 +1,193 @@
+//! The body of an ascii PLY file: a row a line.
+
+use super::faces::Faces;
+use super::header::{Element, Encoding, Header, Kind};
+use super::{check_room, Body, Start, Vertices, FIELDS};
+use crate::document::Moved;
+use crate::error::Error;
+use crate::number::{self, Style};
+use crate::text::{self, Patcher};
+use std::ops::Range;
+
+/// The lines of the body that are not blank.
+struct Lines<'a> {
+    source: &'a [u8],
+    line_end: u8,
+    next: Start,
+}
+
+impl Lines<'_> {
+    /// The next line, and its number.
+    fn next(&mut self) -> Option<(Range<usize>, u64)> {
+        loop {
+            let Start { byte, line } = self.next;
+            let rest = self.source.get(byte..).filter(|rest| !rest.is_empty())?;
+            let end = byte + memchr::memchr(self.line_end, rest).unwrap_or(rest.len());
+            self.next = Start { byte: end + 1, line: line + 1 };
+            if !self.source[byte..end].trim_ascii_start().is_empty() {
+                return Some((byte..end, line));
+            }
+        }
+    }
+
+    /// The line of row `row` of `element`.
+    fn row(&mut self, element: &Element, row: usize) -> Result<(Range<usize>, u64), Error> {
+        let line = self.next.line;
+        self.next().ok_or_else(|| {
+            let (name, count) = (&element.name, element.count);
+            Error::at_line(line, format!("the file ends before row {row} of the {count} of '{name}'"))
+        })
+    }
+}
+
+/// Shows `see` each number of a row, with the index of its property; lists without their counts.
+fn walk_row(
+    element: &Element,
+    source: &[u8],
+    (line, number): (Range<usize>, u64),
+    mut see: impl FnMut(usize, Range<usize>) -> Result<(), String>,
+) -> Result<(), Error> {
+    let wrong = |message: String| Error::at_line(number, message);
+    let mut words = text::tokens(&source[line.clone()], line.start);
+    for (index, property) in element.properties.iter().enumerate() {
+        let ended = || {
+            let (name, property) = (&element.name, &property.name);
+            wrong(format!("the row of '{name}' ends before its property '{property}' is complete"))
+        };
+        let word = words.next().ok_or_else(ended)?;
+        match property.kind {
+            Kind::Scalar(_) => see(index, word).map_err(wrong)?,
+            Kind::List { .. } => {
+                let word = &source[word];
+                let Some(count) = number::parse(word).filter(|&c| c >= 0.0 && c.fract() == 0.0) else {
+                    let (name, shown) = (&property.name, text::quote(word));
+                    return Err(wrong(format!("expected the length of the list '{name}', found {shown}")));
+                };
+                for _ in 0..count as u64 {
+                    see(index, words.next().ok_or_else(ended)?).map_err(wrong)?;
+                }
+            }
+        }
+    }
+    match words.next() {
+        None => Ok(()),
+        Some(word) => {
+            let (name, shown) = (&element.name, text::quote(&source[word]));
+            Err(wrong(format!("the row of '{name}' has more than its properties: {shown}")))
+        }
+    }
+}
+
+/// Shows `see` where the fields of each vertex are, and the number of the line.
+fn each_vertex(
+    vertices: &Vertices,
+    lines: &mut Lines<'_>,
+    mut see: impl FnMut(usize, &[Range<usize>; 6], u64) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let source = lines.source;
+    let mut fields: [Range<usize>; 6] = Default::default();
+    for row in 0..vertices.element.count {
+        let line = lines.row(&vertices.element, row)?;
+        let number = line.1;
+        walk_row(&vertices.element, source, line, |property, word| {
+            if let Some(slot) = vertices.slots[property] {
+                fields[slot] = word;
+            }
+            Ok(())
+        })?;
+        see(row, &fields, number)?;
+    }
+    Ok(())
+}
+
+pub(super) fn read(
+    source: &[u8],
+    header: &Header,
+    vertices: &Vertices,
+    faces: &mut Faces,
+) -> Result<Body, Error> {
+    let next = Start { byte: header.body, line: header.body_line };
+    let mut lines = Lines { source, line_end: header.line_end, next };
+    let mut body = Body { positions: Vec::new(), start: next, decimals: [0; 2], extra: 0 };
+    let mut corners = Vec::new();
+    for (index, element) in header.elements.iter().enumerate() {
+        if index == vertices.index {
+            body.start = lines.next;
+            check_room(&vertices.element, Encoding::Ascii, body.start.byte, source)?;
+            body.positions.reserve_exact(3 * vertices.element.count);
+            each_vertex(vertices, &mut lines, |vertex, fields, line| {
+                for (slot, field) in fields[..3].iter().enumerate() {
+                    let word = &source[field.clone()];
+                    let value = number::parse(word).ok_or_else(|| {
+                        let (name, shown) = (FIELDS[slot], text::quote(word));
+                        let message =
+                            format!("vertex {vertex}: expected a finite number for {name}, found {shown}");
+                        Error::at_line(line, message)
+                    })?;
+                    body.positions.push(value);
+                    body.decimals[0] = body.decimals[0].max(number::decimals(word));
+                }
+                for field in fields[3..].iter().filter(|_| vertices.normals) {
+                    body.decimals[1] = body.decimals[1].max(number::decimals(&source[field.clone()]));
+                }
+                Ok(())
+            })?;
+        } else if !element.properties.is_empty() {
+            check_room(element, Encoding::Ascii, lines.next.byte, source)?;
+            let wanted = faces.wanted(index);
+            for row in 0..element.count {
+                let line = lines.row(element, row)?;
+                let number = line.1;
+                corners.clear();
+                walk_row(element, source, line, |property, word| {
+                    if wanted.is_some_and(|(_, list)| list == property) {
+                        let word = &source[word];
+                        corners.push(number::parse(word).ok_or_else(|| {
+                            format!("face {row}: expected a vertex index, found {}", text::quote(word))
+                        })?);
+                    }
+                    Ok(())
+                })?;
+                if let Some((what, _)) = wanted {
+                    faces.add(what, row, &corners).map_err(|message| Error::at_line(number, message))?;
+                }
+            }
+        }
+    }
+    let rest = &source[lines.next.byte.min(source.len())..];
+    body.extra = rest.trim_ascii().len();
+    Ok(body)
+}
+
+pub(super) fn write(
+    source: &[u8],
+    vertices: &Vertices,
+    line_end: u8,
+    start: Start,
+    decimals: [usize; 2],
+    moved: &Moved<'_>,
+) -> Result<Vec<u8>, Error> {
+    let mut lines = Lines { source, line_end, next: start };
+    let mut patcher = Patcher::new(source);
+    // Normals are of the size of 1.
+    let styles = [Style::new(decimals[0], moved.before, 3), Style::new(decimals[1], &[-1.0, 1.0], 1)];
+    each_vertex(vertices, &mut lines, |vertex, fields, _| {
+        let at = |slot: usize| number::parse(&source[fields[3 + slot].clone()]).unwrap_or(f64::NAN);
+        let turned = vertices.turned(moved, vertex, [0, 1, 2].map(at));
+        for slot in vertices.slots.iter().flatten().copied() {
+            let (before, after) = match (slot, turned) {
+                (0..3, _) => (moved.before[3 * vertex + slot], moved.after[3 * vertex + slot]),
+                (_, Some(normal)) => (at(slot - 3), normal[slot - 3]),
+                (_, None) => continue,
+            };
+            let integer = vertices.scalars[slot].is_integer();
+            let (style, after) =
+                if integer { (Style::Fixed(0), after.round()) } else { (styles[slot / 3], after) };
+            if style.differs(before, after) {
+                style.print(after, patcher.replace(fields[slot].clone()));
+            }
+        }
+        Ok(())
+    })?;
+    Ok(patcher.finish())
+}

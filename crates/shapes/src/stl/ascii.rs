@@ -1,0 +1,185 @@
+//! Ascii STL: `solid`, and `facet normal`, `outer loop`, three `vertex` a triangle.
+
+use super::{faces, moved_normal, triangle};
+use crate::document::{Document, Moved, Parsed};
+use crate::error::Error;
+use crate::number::{self, Style};
+use crate::shape::Written;
+use crate::text::{self, Patcher};
+use std::ops::Range;
+
+/// The words of the file, one after the other.
+struct Words<'a> {
+    source: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Words<'a> {
+    fn next(&mut self) -> Option<Range<usize>> {
+        let word = text::tokens(&self.source[self.at..], self.at).next()?;
+        self.at = word.end;
+        Some(word)
+    }
+
+    fn is(&self, word: &Range<usize>, keyword: &str) -> bool {
+        self.source[word.clone()].eq_ignore_ascii_case(keyword.as_bytes())
+    }
+
+    /// The next word, which must be `keyword` in any case.
+    fn expect(&mut self, keyword: &str) -> Result<(), Error> {
+        match self.next() {
+            Some(word) if self.is(&word, keyword) => Ok(()),
+            word => Err(self.wrong(word, &format!("'{keyword}'"))),
+        }
+    }
+
+    fn three(&mut self) -> Result<[Range<usize>; 3], Error> {
+        let mut word = || self.next().ok_or(());
+        match (word(), word(), word()) {
+            (Ok(x), Ok(y), Ok(z)) => Ok([x, y, z]),
+            _ => Err(self.wrong(None, "three coordinates")),
+        }
+    }
+
+    /// What is left of the line.
+    fn rest_of_line(&mut self) -> &'a [u8] {
+        let rest = &self.source[self.at..];
+        let length = rest.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(rest.len());
+        self.at += length;
+        rest[..length].trim_ascii()
+    }
+
+    fn wrong(&self, word: Option<Range<usize>>, expected: &str) -> Error {
+        let (at, found) = match word {
+            Some(word) => (word.start, format!("found {}", text::quote(&self.source[word]))),
+            None => (self.source.len(), "the file ends".into()),
+        };
+        let line_ends = |ends: u8| self.source[..at].iter().filter(|&&b| b == ends).count();
+        let line = 1 + line_ends(b'\n').max(line_ends(b'\r'));
+        Error::at_line(line as u64, format!("expected {expected}, {found}"))
+    }
+}
+
+/// The places of a triangle's numbers.
+struct Facet {
+    normal: [Range<usize>; 3],
+    corners: [[Range<usize>; 3]; 3],
+}
+
+/// Shows `see` each facet; returns the names of the solids.
+fn each_facet<'a>(
+    words: &mut Words<'a>,
+    mut see: impl FnMut(&Words<'_>, Facet) -> Result<(), Error>,
+) -> Result<Vec<&'a [u8]>, Error> {
+    let mut names = Vec::new();
+    let mut open = false;
+    while let Some(word) = words.next() {
+        if words.is(&word, "facet") && open {
+            words.expect("normal")?;
+            let normal = words.three()?;
+            words.expect("outer")?;
+            words.expect("loop")?;
+            let mut corners: [[Range<usize>; 3]; 3] = Default::default();
+            for corner in &mut corners {
+                words.expect("vertex")?;
+                *corner = words.three()?;
+            }
+            words.expect("endloop")?;
+            words.expect("endfacet")?;
+            see(words, Facet { normal, corners })?;
+        } else if words.is(&word, "endsolid") && open {
+            words.rest_of_line();
+            open = false;
+        } else if words.is(&word, "solid") && !open {
+            names.push(words.rest_of_line());
+            open = true;
+        } else {
+            return Err(words.wrong(Some(word), if open { "'facet' or 'endsolid'" } else { "'solid'" }));
+        }
+    }
+    if open {
+        return Err(words.wrong(None, "'facet' or 'endsolid'"));
+    }
+    Ok(names)
+}
+
+pub(super) fn read(source: &[u8]) -> Result<Parsed, Error> {
+    let mut positions = Vec::new();
+    let (mut decimals, mut normal_decimals) = (0, 0);
+    let names = each_facet(&mut Words { source, at: 0 }, |words, facet| {
+        for word in facet.corners.into_iter().flatten() {
+            let Some(value) = number::parse(&source[word.clone()]) else {
+                return Err(words.wrong(Some(word), "a finite number"));
+            };
+            positions.push(value);
+            decimals = decimals.max(number::decimals(&source[word]));
+        }
+        for word in facet.normal {
+            normal_decimals = normal_decimals.max(number::decimals(&source[word]));
+        }
+        Ok(())
+    })?;
+
+    const NAMED: usize = 20;
+    let name = |name: &&[u8]| match String::from_utf8_lossy(name) {
+        name if name.is_empty() => "(no name)".into(),
+        name => name.into_owned(),
+    };
+    let mut listed = names.iter().take(NAMED).map(name).collect::<Vec<_>>().join(", ");
+    if names.len() > NAMED {
+        listed += &format!(" and {} more", names.len() - NAMED);
+    }
+    let facts = [
+        ("encoding", "ascii".to_string()),
+        ("solids", listed),
+        ("normals", "those of moved triangles computed anew".into()),
+    ];
+    Ok(Parsed {
+        dim: 3,
+        faces: Some(faces(positions.len() / 3)),
+        positions,
+        facts: facts.map(|(what, value)| (what.to_string(), value)).into(),
+        document: Box::new(Ascii { decimals, normal_decimals }),
+    })
+}
+
+struct Ascii {
+    /// Most decimals of a position, and of a normal.
+    decimals: usize,
+    normal_decimals: usize,
+}
+
+impl Document for Ascii {
+    fn has_normals(&self) -> bool {
+        false
+    }
+
+    fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {
+        let style = Style::new(self.decimals, moved.before, 3);
+        // Facet normals are of length 1.
+        let normal_style = Style::new(self.normal_decimals, &[-1.0, 1.0], 1);
+        let mut patcher = Patcher::new(source);
+        let mut index = 0;
+        each_facet(&mut Words { source, at: 0 }, |_, facet| {
+            let (before, after) = (triangle(moved.before, index), triangle(moved.after, index));
+            index += 1;
+            let read = |word: &Range<usize>| number::parse(&source[word.clone()]).unwrap_or(f64::NAN);
+            let [x, y, z] = &facet.normal;
+            let old = [read(x), read(y), read(z)];
+            if let Some(normal) = moved_normal(before, after, old) {
+                for ((word, was), value) in facet.normal.into_iter().zip(old).zip(normal) {
+                    if was.is_nan() || normal_style.differs(was, value) {
+                        normal_style.print(value, patcher.replace(word));
+                    }
+                }
+            }
+            for ((word, &was), &value) in facet.corners.into_iter().flatten().zip(before).zip(after) {
+                if style.differs(was, value) {
+                    style.print(value, patcher.replace(word));
+                }
+            }
+            Ok(())
+        })?;
+        Ok(Written { bytes: patcher.finish(), side_files: Vec::new() })
+    }
+}
