@@ -1,0 +1,83 @@
+"""The compiled core. Arguments are C-contiguous and checked by the callers in this package."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+_Progress = Callable[[float], None] | None
+
+VERSION: str
+
+class ShapeFile:
+    def __new__(cls, data: bytes, extension: str, side_file: Callable[[str], bytes]) -> ShapeFile: ...
+    @property
+    def format(self) -> str: ...
+    @property
+    def extensions(self) -> list[str]: ...
+    @property
+    def facts(self) -> list[tuple[str, str]]: ...
+    @property
+    def has_normals(self) -> bool: ...
+    def positions(self) -> NDArray[np.float64]: ...
+    def faces(self) -> NDArray[np.uint32] | None: ...
+    def write(
+        self, positions: NDArray[np.float64], maps: NDArray[np.float64] | None
+    ) -> tuple[bytes, list[tuple[str, bytes]]]: ...
+
+def inverse_distance_logits(
+    x: NDArray[np.float64],
+    p: NDArray[np.float64],
+    half: float,
+    alpha: float,
+    epsilon: float,
+    progress: _Progress,
+) -> NDArray[np.float32]: ...
+
+class Network:
+    def __new__(
+        cls,
+        dim: int,
+        centre: Sequence[float],
+        half: float,
+        frequencies: NDArray[np.float32],
+        layers: Sequence[tuple[NDArray[np.float32], NDArray[np.float32]]],
+    ) -> Network: ...
+    @property
+    def dim(self) -> int: ...
+    @property
+    def centre(self) -> list[float]: ...
+    @property
+    def half(self) -> float: ...
+    @property
+    def frequencies(self) -> NDArray[np.float32]: ...
+    @property
+    def layers(self) -> list[tuple[NDArray[np.float32], NDArray[np.float32]]]: ...
+    def logits(self, x: NDArray[np.float64], progress: _Progress) -> NDArray[np.float32]: ...
+
+def fit(
+    p: NDArray[np.float64],
+    centre: Sequence[float],
+    half: float,
+    width: int,
+    steps: int | None,
+    rate: float,
+    seed: int,
+    fourier_sigma: float | None,
+    progress: _Progress,
+) -> tuple[Network, list[float], float]: ...
+def train(
+    network: Network, p: NDArray[np.float64], steps: int | None, rate: float, progress: _Progress
+) -> tuple[Network, list[float], float]: ...
+
+class Deformer:
+    def __new__(
+        cls,
+        x: NDArray[np.float64],
+        p: NDArray[np.float64],
+        logits: NDArray[np.float32],
+        transform: str,
+    ) -> Deformer: ...
+    def deform(
+        self, q: NDArray[np.float64], temperature: float, maps: bool, progress: _Progress
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]: ...

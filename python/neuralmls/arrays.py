@@ -1,0 +1,92 @@
+"""Arguments as the compiled core takes them: C-contiguous float64, checked, never the caller's memory changed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from neuralmls.errors import ArgumentError
+
+# Told the fraction done, from 0 to 1; what it raises stops the call.
+Progress: TypeAlias = Callable[[float], None]
+
+
+def as_points(name: str, values: ArrayLike, dimension: int | None = None) -> NDArray[np.float64]:
+    """Return finite points (n, d), d = 1, 2 or 3, or `dimension` if given.
+
+    Raises
+    ------
+    ArgumentError
+        The values are not numbers of that shape, or one is not finite.
+    """
+    try:
+        points = np.ascontiguousarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise ArgumentError(f"{name}: expected an (n, d) array of numbers: {error}") from error
+    if points.ndim != 2 or not 1 <= points.shape[1] <= 3:
+        raise ArgumentError(
+            f"{name}: expected an (n, d) array with d = 1, 2 or 3, found shape {points.shape}"
+        )
+    if dimension is not None and points.shape[1] != dimension:
+        raise ArgumentError(f"{name}: expected {dimension} coordinates a point, found {points.shape[1]}")
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if bad.size:
+        raise ArgumentError(f"{name}: point {bad[0]} has a coordinate that is not finite")
+    return points
+
+
+def as_number(name: str, value: float, low: float, high: float = np.inf, *, open_low: bool = True) -> float:
+    """Return a finite number above `low` (or from it on) and up to `high`.
+
+    Raises
+    ------
+    ArgumentError
+        It is none, or out of that range.
+    """
+    expected = f"above {low:g}" if open_low else f"of at least {low:g}"
+    if high < np.inf:
+        expected += f" and at most {high:g}"
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise ArgumentError(f"{name}: expected a number {expected}, found {value!r}") from None
+    if not np.isfinite(number) or number > high or number < low or (open_low and number == low):
+        raise ArgumentError(f"{name}: expected a number {expected}, found {value!r}")
+    return number
+
+
+def as_count(name: str, value: int, low: int, high: int) -> int:
+    """Return a whole number from `low` to `high`.
+
+    Raises
+    ------
+    ArgumentError
+        It is none, or out of that range.
+    """
+    try:
+        count = value.__index__()
+    except AttributeError:
+        raise ArgumentError(f"{name}: expected a whole number, found {value!r}") from None
+    if not low <= count <= high:
+        raise ArgumentError(f"{name}: expected a whole number from {low} to {high}, found {value}")
+    return count
+
+
+def as_box(bounds: ArrayLike, dimension: int) -> tuple[list[float], float]:
+    """Return centre and half of the longest side of a box (2, d): least and greatest corner.
+
+    Raises
+    ------
+    ArgumentError
+        It is no such box, or has no size.
+    """
+    box = as_points("bounds", bounds, dimension)
+    if len(box) != 2 or (box[0] > box[1]).any():
+        raise ArgumentError("bounds: expected two rows, the least and the greatest corner of the shape's box")
+    half = float((box[1] - box[0]).max()) / 2
+    if half == 0:
+        raise ArgumentError("bounds: all points are in one place, so that there is no size to measure by")
+    return (box[0] + (box[1] - box[0]) / 2).tolist(), half

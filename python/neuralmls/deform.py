@@ -1,0 +1,80 @@
+"""The pipeline: control points -> fit -> logits -> softmax(T) -> MLS. The one place where its steps meet."""
+
+from __future__ import annotations
+
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from neuralmls.arrays import as_points
+from neuralmls.deformer import Deformer, Floats, Transform
+from neuralmls.errors import ArgumentError
+from neuralmls.weights import InverseDistanceWeights, NeuralWeights, Weights
+
+WeightsName: TypeAlias = Literal["neural", "inverse-distance"]
+
+
+def deform(
+    x: ArrayLike,
+    p: ArrayLike,
+    q: ArrayLike,
+    *,
+    weights: WeightsName | Weights = "neural",
+    transform: Transform = "rigid",
+    temperature: float = 1.0,
+    seed: int = 0,
+) -> Floats:
+    """Deform the points `x` so that the control points `p` move to `q`, in one call.
+
+    To move them again and again, bind once: `Deformer(x, NeuralWeights.fit(p, bounds=...)).deform(q)`.
+
+    Parameters
+    ----------
+    x : (n, d), d = 1, 2 or 3
+        Points: float32 or float64, of any memory layout; never changed.
+    p, q : (m, d)
+        Control points at rest and moved, in the coordinates of `x`.
+    weights : "neural", "inverse-distance", or a weight function
+    transform : "rigid", "similarity" or "affine"
+    temperature : float > 0
+    seed : int
+        Of the network's training (neural weights only).
+
+    Returns
+    -------
+    (n, d), float32 if `x` was, else float64
+
+    Raises
+    ------
+    ArgumentError
+        An argument is out of its range, or does not fit another.
+
+    Examples
+    --------
+    >>> deform([[0.0], [1.0], [2.0]], [[0.0], [2.0]], [[1.0], [3.0]], weights="inverse-distance").tolist()
+    [[1.0], [2.0], [3.0]]
+    """
+    sources = as_points("p", p)
+    targets = as_points("q", q, sources.shape[1])
+    if len(sources) == 0 or len(targets) != len(sources):
+        raise ArgumentError(
+            f"q: expected one target for each of at least one control point, found {len(targets)} for {len(sources)}"
+        )
+    points = as_points("x", x, sources.shape[1])
+    if not isinstance(weights, str):
+        function: Weights = weights
+    elif weights == "neural":
+        function = NeuralWeights.fit(sources, bounds=_bounds(points), seed=seed)
+    elif weights == "inverse-distance":
+        function = InverseDistanceWeights(sources)
+    else:
+        raise ArgumentError(f"weights: expected 'neural' or 'inverse-distance', found '{weights}'")
+    return Deformer(x, function, transform=transform).deform(targets, temperature)
+
+
+def _bounds(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> ArrayLike | None:
+    """The points' box, or None where it has no size (the network then measures by the control points)."""
+    if len(points) == 0 or (points == points[0]).all():
+        return None
+    return np.stack([points.min(axis=0), points.max(axis=0)])

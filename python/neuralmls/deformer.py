@@ -1,0 +1,128 @@
+"""Points bound to their weights once, and deformed many times."""
+
+from __future__ import annotations
+
+from typing import Literal, TypeAlias, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from neuralmls import _core
+from neuralmls.arrays import Progress, as_number, as_points
+from neuralmls.errors import ArgumentError
+from neuralmls.weights.protocol import Weights
+
+Transform: TypeAlias = Literal["rigid", "similarity", "affine"]
+Floats: TypeAlias = NDArray[np.floating]
+
+
+class Deformer:
+    """Points `x`, bound to the logits of a weight function, deformed by moving least squares.
+
+    `y = M (x - p*) + q*`, with the weighted centroids `p* = sum w_i p_i` and `q* = sum w_i q_i`, and `M` the rotation, rotation
+    and scale, or linear map that minimises `sum w_i |M (p_i - p*) - (q_i - q*)|^2`. `M` of a rigid map is never a reflection;
+    what few or aligned control points leave open follows the motion of all of them.
+
+    Parameters
+    ----------
+    x : (n, d), d = 1, 2 or 3
+        The points, in any units.
+    weights : Weights
+        `NeuralWeights`, `InverseDistanceWeights`, or anything with `control_points` and `logits`.
+    transform : "rigid", "similarity" or "affine"
+    progress : callable, optional
+        Told the fraction done of the evaluation of the weights; what it raises stops it.
+
+    Raises
+    ------
+    ArgumentError
+        `x` does not hold finite points of the control points' dimension, or there is no such transform.
+
+    Source
+    ------
+    Schaefer, McPhail, Warren 2006; Zhu, Gortler 2007; Shechter et al. 2022, section 3.
+
+    Examples
+    --------
+    >>> from neuralmls import InverseDistanceWeights
+    >>> weights = InverseDistanceWeights([[0.0, 0.0], [1.0, 0.0]])
+    >>> deformer = Deformer([[0.5, 0.5]], weights, transform="rigid")
+    >>> deformer.deform([[0.0, 0.0], [0.0, 1.0]]).round(6).tolist()   # a quarter turn
+    [[-0.5, 0.5]]
+    """
+
+    def __init__(
+        self,
+        x: ArrayLike,
+        weights: Weights,
+        *,
+        transform: Transform = "rigid",
+        progress: Progress | None = None,
+    ) -> None:
+        dtype = getattr(x, "dtype", None)
+        self._dtype = np.dtype(np.float32) if dtype == np.float32 else np.dtype(np.float64)
+        p = as_points("control_points", weights.control_points)
+        points = as_points("x", x, p.shape[1])
+        logits = np.ascontiguousarray(weights.logits(points, progress=progress), dtype=np.float32)
+        if logits.shape != (len(points), len(p)):
+            raise ArgumentError(f"logits: expected shape {(len(points), len(p))}, found {logits.shape}")
+        self._p = p
+        self._core = _core.Deformer(points, p, logits, transform)
+
+    @overload
+    def deform(
+        self,
+        targets: ArrayLike,
+        temperature: float = ...,
+        *,
+        return_maps: Literal[False] = ...,
+        progress: Progress | None = ...,
+    ) -> Floats: ...
+
+    @overload
+    def deform(
+        self,
+        targets: ArrayLike,
+        temperature: float = ...,
+        *,
+        return_maps: Literal[True],
+        progress: Progress | None = ...,
+    ) -> tuple[Floats, NDArray[np.float64]]: ...
+
+    def deform(
+        self,
+        targets: ArrayLike,
+        temperature: float = 1.0,
+        *,
+        return_maps: bool = False,
+        progress: Progress | None = None,
+    ) -> Floats | tuple[Floats, NDArray[np.float64]]:
+        """Return where the points go when the control points go to `targets`.
+
+        Parameters
+        ----------
+        targets : (m, d)
+            The control points moved, `q`. If all are where they were, the points are returned bit for bit.
+        temperature : float > 0
+            Of the softmax: below 1 parts move more apart from each other, above 1 more together.
+        return_maps : bool
+            Also return the local maps `M`, (n, d, d) float64.
+        progress : callable, optional
+            Told the fraction done, from 0 to 1; what it raises stops the call.
+
+        Returns
+        -------
+        (n, d), float32 if the points were, else float64
+
+        Raises
+        ------
+        ArgumentError
+            The targets are not as many finite points as there are control points; the temperature is not above 0.
+        """
+        q = as_points("targets", targets, self._p.shape[1])
+        if len(q) != len(self._p):
+            raise ArgumentError(f"targets: expected {len(self._p)} of them, found {len(q)}")
+        t = as_number("temperature", temperature, 0)
+        positions, maps = self._core.deform(q, t, return_maps, progress)
+        y: Floats = positions.astype(self._dtype, copy=False)
+        return (y, maps) if maps is not None else y
