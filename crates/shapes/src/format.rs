@@ -1,5 +1,9 @@
 //! Which format is a file? By its content first, by its ending where the content does not say.
 
+mod sniff;
+
+use crate::error::Error;
+
 /// The formats that this crate reads and writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Format {
@@ -66,5 +70,21 @@ impl Format {
     pub fn from_extension(extension: &str) -> Option<Format> {
         let extension = extension.to_ascii_lowercase();
         Format::ALL.into_iter().find(|f| f.extensions().contains(&extension.as_str()))
+    }
+
+    /// The format of a file by its first bytes, and by its ending (no dot) where they do not say.
+    ///
+    /// ```
+    /// use neuralmls_shapes::Format;
+    /// assert_eq!(Format::sniff(b"v 0 0 0\n", None), Ok(Format::Obj));
+    /// let error = Format::sniff(b"ply\nformat ascii 1.0\n", Some("obj")).unwrap_err();
+    /// assert_eq!(error.to_string(), "this is a PLY file, not OBJ: rename it to .ply");
+    /// ```
+    ///
+    /// # Errors
+    /// For an empty file, for one whose content is surely of another format than its ending says, for formats that this crate
+    /// knows but does not read, and where neither content nor ending tells.
+    pub fn sniff(bytes: &[u8], extension: Option<&str>) -> Result<Format, Error> {
+        sniff::sniff(bytes, extension)
     }
 }

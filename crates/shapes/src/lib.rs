@@ -13,10 +13,12 @@
 //! | [`mod@format`] | which format are these bytes? |
 //! | `obj`, `ply`, `off`, `stl`, `gltf`, `table`, `npy` | one format each, all behind the trait `Document` |
 //! | `text`, `number` | lines and tokens with their places in the file; numbers read and printed |
+//! | `facts` | what several formats tell alike about their content |
 //! | `normals` | a normal turned by a local map's inverse transpose |
 
 mod document;
 mod error;
+mod facts;
 pub mod format;
 mod gltf;
 mod normals;

@@ -52,6 +52,14 @@ impl Style {
         }
     }
 
+    /// For a normal whose numbers were these tokens: as many decimals as they had, at least six.
+    pub(crate) fn for_normal(tokens: [&[u8]; 3]) -> Style {
+        match tokens.map(decimals).into_iter().fold(6, usize::max) {
+            decimals @ ..=15 => Style::Fixed(decimals),
+            _ => Style::Shortest,
+        }
+    }
+
     /// Whether `after` prints as another number than `before`: a coordinate that moved by less than the last printed digit keeps its token.
     pub(crate) fn differs(self, before: f64, after: f64) -> bool {
         match self {

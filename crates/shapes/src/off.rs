@@ -1,8 +1,263 @@
-//! Stub.
+//! Geomview OFF: `[ST][C][N]OFF`, the counts, one line a vertex, one line a face.
+//!
+//! A vertex line holds the position, then (after what the header names) normal, colour and texture coordinates, in this
+//! order. A face line holds the number of corners, their indices from 0, and perhaps a colour. `#` starts a comment.
 
-use crate::document::Parsed;
+use std::ops::Range;
+
+use crate::document::{Document, Moved, Parsed};
 use crate::error::Error;
+use crate::facts;
+use crate::normals;
+use crate::number::{self, Style};
+use crate::shape::Written;
+use crate::text::{quote, tokens, Line, Lines, Patcher};
 
-pub(crate) fn read(_source: &[u8]) -> Result<Parsed, Error> {
-    Err(Error::unsupported("not written yet"))
+/// What the header's prefixes announce for each vertex.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Header {
+    texture: bool,
+    colours: bool,
+    normals: bool,
+    four: bool,
+    any_dim: bool,
+}
+
+/// The header that a line starts with, and the rest of the line: `OFF`, `STCNOFF`, also `OFF8 6 12`.
+pub(crate) fn split_header(line: &[u8]) -> Option<(Header, &[u8])> {
+    let mut header = Header::default();
+    let mut rest = line;
+    for (prefix, flag) in [
+        (&b"ST"[..], &mut header.texture),
+        (b"C", &mut header.colours),
+        (b"N", &mut header.normals),
+        (b"4", &mut header.four),
+        (b"n", &mut header.any_dim),
+    ] {
+        if let Some(behind) = rest.strip_prefix(prefix) {
+            (*flag, rest) = (true, behind);
+        }
+    }
+    let rest = rest.strip_prefix(b"OFF")?;
+    let ends = rest.first().is_none_or(|b| b.is_ascii_whitespace() || b.is_ascii_digit() || *b == b'#');
+    ends.then_some((header, rest))
+}
+
+/// A line without its comment and the white space around it, if anything is left.
+fn content(line: Line<'_>) -> Option<Line<'_>> {
+    let end = memchr::memchr(b'#', line.bytes).unwrap_or(line.bytes.len());
+    let text = &line.bytes[..end];
+    let indent = text.len() - text.trim_ascii_start().len();
+    let bytes = text.trim_ascii();
+    (!bytes.is_empty()).then_some(Line { number: line.number, start: line.start + indent, bytes })
+}
+
+/// How many vertices and faces the file holds, and where the lines of the vertices start.
+struct Counts {
+    vertices: usize,
+    faces: usize,
+    header: Header,
+}
+
+/// Reads header and counts, and leaves `lines` at the first vertex.
+fn read_counts<'a>(source: &'a [u8], lines: &mut impl Iterator<Item = Line<'a>>) -> Result<Counts, Error> {
+    let missing = || Error::malformed("the file ends before the numbers of vertices and faces");
+    let mut line = lines.next().ok_or_else(missing)?;
+    let mut header = Header::default();
+    if let Some((found, rest)) = split_header(line.bytes) {
+        header = found;
+        if found.four || found.any_dim {
+            return Err(Error::unsupported(
+                "this OFF file has positions of four or any dimensions (4OFF, nOFF), which is not read",
+            ));
+        }
+        let rest = rest.trim_ascii();
+        if rest.starts_with(b"BINARY") {
+            return Err(Error::unsupported("this is a binary OFF file, which is not read: save it as text"));
+        }
+        line = if rest.is_empty() { lines.next().ok_or_else(missing)? } else { Line { bytes: rest, ..line } };
+    }
+    let counts: Vec<&[u8]> = tokens(line.bytes, 0).map(|range| &line.bytes[range]).collect();
+    if !(2..=3).contains(&counts.len()) {
+        return Err(Error::at_line(
+            line.number,
+            format!("expected the numbers of vertices, faces and edges, found {}", quote(line.bytes)),
+        ));
+    }
+    let count = |token: &[u8]| {
+        whole(token).ok_or_else(|| {
+            Error::at_line(
+                line.number,
+                format!("expected a number of vertices or faces, found {}", quote(token)),
+            )
+        })
+    };
+    let (vertices, faces) = (count(counts[0])?, count(counts[1])?);
+    // "0 0 0" and "0" with a line ending are the shortest lines.
+    let room = source.len() as u64 + 1;
+    if vertices.saturating_mul(6).saturating_add(faces.saturating_mul(2)) > room
+        || vertices > u64::from(u32::MAX)
+    {
+        return Err(Error::at_line(
+            line.number,
+            format!(
+                "the file promises {vertices} vertices and {faces} faces, which {} bytes cannot hold",
+                source.len()
+            ),
+        ));
+    }
+    Ok(Counts { vertices: vertices as usize, faces: faces as usize, header })
+}
+
+/// A number of things; saturates rather than overflows, for the sentence about it.
+fn whole(token: &[u8]) -> Option<u64> {
+    let digits = token.strip_prefix(b"+").unwrap_or(token);
+    (!digits.is_empty() && digits.iter().all(u8::is_ascii_digit)).then(|| {
+        digits.iter().fold(0u64, |sum, d| sum.saturating_mul(10).saturating_add(u64::from(d - b'0')))
+    })
+}
+
+/// The first three numbers of a vertex line and their places in the line, skipping `skip` numbers before them.
+fn three(line: Line<'_>, skip: usize, what: &str) -> Result<[(Range<usize>, f64); 3], Error> {
+    let mut words = tokens(line.bytes, 0).skip(skip);
+    let mut next = || {
+        let range = words.next().ok_or_else(|| {
+            Error::at_line(
+                line.number,
+                format!("expected {what} of three numbers, found {}", quote(line.bytes)),
+            )
+        })?;
+        let word = &line.bytes[range.clone()];
+        match number::parse(word) {
+            Some(value) => Ok((range, value)),
+            None => Err(Error::at_line(
+                line.number,
+                format!("expected {what}, found {}, which is not a finite number", quote(word)),
+            )),
+        }
+    };
+    Ok([next()?, next()?, next()?])
+}
+
+pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
+    let mut lines = Lines::new(source).filter_map(content);
+    let counts = read_counts(source, &mut lines)?;
+    let mut positions = Vec::with_capacity(3 * counts.vertices);
+    let mut decimals = 0;
+    for index in 0..counts.vertices {
+        let line = lines.next().ok_or_else(|| {
+            Error::malformed(format!("the file ends after {index} of {} vertices", counts.vertices))
+        })?;
+        for (range, value) in three(line, 0, "a position")? {
+            decimals = decimals.max(number::decimals(&line.bytes[range]));
+            positions.push(value);
+        }
+        if counts.header.normals {
+            three(line, 3, "a normal")?;
+        }
+    }
+    let mut triangles = Vec::new();
+    let mut sizes = facts::FaceSizes::default();
+    for index in 0..counts.faces {
+        let line = lines.next().ok_or_else(|| {
+            Error::malformed(format!("the file ends after {index} of {} faces", counts.faces))
+        })?;
+        sizes.add(read_face(line, counts.vertices, &mut triangles)?);
+    }
+    let mut facts = Vec::new();
+    sizes.tell(&mut facts);
+    for (announced, name, fate) in [
+        (counts.header.normals, "normals", "turned with the surface"),
+        (counts.header.colours, "vertex colours", "carried over"),
+        (counts.header.texture, "texture coordinates", "carried over"),
+    ] {
+        if announced {
+            facts.push((name.into(), format!("{} ({fate})", counts.vertices)));
+        }
+    }
+    Ok(Parsed {
+        dim: 3,
+        positions,
+        faces: (counts.faces > 0).then_some(triangles),
+        facts,
+        document: Box::new(Off { decimals, has_normals: counts.header.normals }),
+    })
+}
+
+/// Adds a face's triangles and returns its number of corners.
+fn read_face(line: Line<'_>, vertices: usize, triangles: &mut Vec<[u32; 3]>) -> Result<usize, Error> {
+    let wrong = |found: String| {
+        Error::at_line(
+            line.number,
+            format!("expected a face as its number of corners and their indices, found {found}"),
+        )
+    };
+    let mut words = tokens(line.bytes, 0).map(|range| &line.bytes[range]);
+    let mut next = || {
+        let word =
+            words.next().ok_or_else(|| wrong(format!("the end of the line after {}", quote(line.bytes))))?;
+        whole(word).ok_or_else(|| wrong(quote(word)))
+    };
+    let corners = next()?;
+    let (mut first, mut previous) = (0, 0);
+    for corner in 0..corners {
+        let index = next()?;
+        if index >= vertices as u64 {
+            return Err(Error::at_line(
+                line.number,
+                format!("a face's corner is vertex {index}, but the file has {vertices} vertices (counted from 0)"),
+            ));
+        }
+        let index = index as u32;
+        match corner {
+            0 => first = index,
+            1 => {}
+            _ => triangles.push([first, previous, index]),
+        }
+        previous = index;
+    }
+    Ok(corners as usize)
+}
+
+/// How to write it: the vertex lines are found again.
+struct Off {
+    decimals: usize,
+    has_normals: bool,
+}
+
+impl Document for Off {
+    fn has_normals(&self) -> bool {
+        self.has_normals
+    }
+
+    fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {
+        let style = Style::new(self.decimals, moved.after, 3);
+        let maps = moved.maps.filter(|_| self.has_normals);
+        let mut lines = Lines::new(source).filter_map(content);
+        let counts = read_counts(source, &mut lines)?;
+        let mut patcher = Patcher::new(source);
+        for (index, line) in lines.take(counts.vertices).enumerate() {
+            let start = line.start;
+            let mut put = |range: Range<usize>, was: f64, is: f64, style: Style| {
+                if style.differs(was, is) {
+                    style.print(is, patcher.replace(start + range.start..start + range.end));
+                }
+            };
+            let at = 3 * index;
+            let position = three(line, 0, "a position")?;
+            for (k, (range, _)) in position.into_iter().enumerate() {
+                put(range, moved.before[at + k], moved.after[at + k], style);
+            }
+            if let Some(maps) = maps {
+                let normal = three(line, 3, "a normal")?;
+                let was = [normal[0].1, normal[1].1, normal[2].1];
+                let is = normals::turn(normals::map_at(maps, index), was);
+                let style = Style::for_normal(normal.each_ref().map(|(range, _)| &line.bytes[range.clone()]));
+                for ((range, was), is) in normal.into_iter().zip(is) {
+                    put(range, was, is, style);
+                }
+            }
+        }
+        Ok(Written { bytes: patcher.finish(), side_files: Vec::new() })
+    }
 }

@@ -45,12 +45,28 @@ pub struct Shape {
 }
 
 impl Shape {
+    /// Reads a file whose format is told by its content, or by its ending (`"obj"`) where that does not tell.
+    ///
+    /// # Errors
+    /// As [`Format::sniff`] and [`Shape::read`].
+    pub fn open(
+        source: Vec<u8>,
+        extension: Option<&str>,
+        side_files: &SideFiles<'_>,
+    ) -> Result<Shape, Error> {
+        let format = Format::sniff(&source, extension)?;
+        Shape::read(source, format, side_files)
+    }
+
     /// Reads a file of the given format.
     ///
     /// # Errors
-    /// One sentence with the line or byte, for a file that is broken, that uses what this crate does not read, or that has a
-    /// position that is not finite.
+    /// One sentence with the line or byte, for a file that is broken, that uses what this crate does not read, that has a
+    /// position that is not finite, or no position at all.
     pub fn read(source: Vec<u8>, format: Format, side_files: &SideFiles<'_>) -> Result<Shape, Error> {
+        if source.is_empty() {
+            return Err(Error::malformed("the file is empty"));
+        }
         let Parsed { dim, positions, faces, facts, document } = match format {
             Format::Obj => obj::read(&source)?,
             Format::Ply => ply::read(&source)?,
@@ -61,6 +77,12 @@ impl Shape {
             Format::Table => table::read(&source)?,
             Format::Npy => npy::read(&source)?,
         };
+        if positions.is_empty() {
+            return Err(Error::malformed(format!(
+                "the {} file has no vertices, expected at least one",
+                format.name()
+            )));
+        }
         debug_assert_eq!(positions.len() % dim, 0);
         Ok(Shape { source, format, dim, positions, faces, facts, document })
     }

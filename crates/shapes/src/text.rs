@@ -24,11 +24,6 @@ impl<'a> Lines<'a> {
     pub(crate) fn new(source: &'a [u8]) -> Self {
         Lines { source, at: bom_length(source), number: 0 }
     }
-
-    /// The offset behind the lines given so far.
-    pub(crate) fn offset(&self) -> usize {
-        self.at
-    }
 }
 
 impl<'a> Iterator for Lines<'a> {
