@@ -9,14 +9,19 @@
 (100, 3)
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 from neuralmls._core import VERSION as __version__
-from neuralmls.control_points import ControlPoints
-from neuralmls.deform import deform
-from neuralmls.deformer import Deformer
-from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
-from neuralmls.placement import farthest_points
-from neuralmls.shape import Shape, read
-from neuralmls.weights import InverseDistanceWeights, NeuralWeights, Weights, softmax
+
+if TYPE_CHECKING:
+    from neuralmls.control_points import ControlPoints
+    from neuralmls.deformer import Deformer
+    from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
+    from neuralmls.pipeline import deform
+    from neuralmls.placement import farthest_points
+    from neuralmls.shape import Shape, read
+    from neuralmls.weights import InverseDistanceWeights, NeuralWeights, Weights, softmax
 
 __all__ = [
     "ArgumentError",
@@ -35,3 +40,34 @@ __all__ = [
     "read",
     "softmax",
 ]
+
+# Which module has which name. They are imported when first asked for, so that `neuralmls --help` need not wait for numpy.
+# No module may be called like a name that another one gives: importing it would hide that name.
+_HOMES = {
+    "ArgumentError": "errors",
+    "ControlPointError": "errors",
+    "ControlPoints": "control_points",
+    "Deformer": "deformer",
+    "FileError": "errors",
+    "InverseDistanceWeights": "weights",
+    "NeuralMLSError": "errors",
+    "NeuralWeights": "weights",
+    "Shape": "shape",
+    "Weights": "weights",
+    "deform": "pipeline",
+    "farthest_points": "placement",
+    "read": "shape",
+    "softmax": "weights",
+}
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'neuralmls' has no attribute '{name}'")
+    value: object = getattr(import_module(f"neuralmls.{_HOMES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
