@@ -203,8 +203,7 @@ impl Array {
             ("<" | ">" | "=", "f8") => true,
             _ => {
                 return Err(Error::unsupported(format!(
-                    "the array holds {}, which cannot carry a motion faithfully: expected float32 or float64 \
-                     (array.astype('float32'))",
+                    "the array's dtype is {}, expected float32 or float64 ('<f4' or '<f8'; array.astype converts)",
                     text::quote(header.descr.as_bytes())
                 )))
             }

@@ -40,13 +40,14 @@ impl Lines<'_> {
     }
 }
 
-/// Shows `see` each number of a row, with the index of its property; lists without their counts.
+/// Shows `see` each number of a row, with the index of its property; lists without their counts. Returns whether the line has
+/// more than that, as MeshLab wrote at times: the header's properties are right nevertheless.
 fn walk_row(
     element: &Element,
     source: &[u8],
     (line, number): (Range<usize>, u64),
     mut see: impl FnMut(usize, Range<usize>) -> Result<(), String>,
-) -> Result<(), Error> {
+) -> Result<bool, Error> {
     let wrong = |message: String| Error::at_line(number, message);
     let mut words = text::tokens(&source[line.clone()], line.start);
     for (index, property) in element.properties.iter().enumerate() {
@@ -69,35 +70,31 @@ fn walk_row(
             }
         }
     }
-    match words.next() {
-        None => Ok(()),
-        Some(word) => {
-            let (name, shown) = (&element.name, text::quote(&source[word]));
-            Err(wrong(format!("the row of '{name}' has more than its properties: {shown}")))
-        }
-    }
+    Ok(words.next().is_some())
 }
 
-/// Shows `see` where the fields of each vertex are, and the number of the line.
+/// Shows `see` where the fields of each vertex are, and the number of the line. Returns how many lines have more than their row.
 fn each_vertex(
     vertices: &Vertices,
     lines: &mut Lines<'_>,
     mut see: impl FnMut(usize, &[Range<usize>; 6], u64) -> Result<(), Error>,
-) -> Result<(), Error> {
+) -> Result<usize, Error> {
     let source = lines.source;
+    let mut longer = 0;
     let mut fields: [Range<usize>; 6] = Default::default();
     for row in 0..vertices.element.count {
         let line = lines.row(&vertices.element, row)?;
         let number = line.1;
-        walk_row(&vertices.element, source, line, |property, word| {
+        let is_longer = walk_row(&vertices.element, source, line, |property, word| {
             if let Some(slot) = vertices.slots[property] {
                 fields[slot] = word;
             }
             Ok(())
         })?;
+        longer += usize::from(is_longer);
         see(row, &fields, number)?;
     }
-    Ok(())
+    Ok(longer)
 }
 
 pub(super) fn read(
@@ -108,14 +105,15 @@ pub(super) fn read(
 ) -> Result<Body, Error> {
     let next = Start { byte: header.body, line: header.body_line };
     let mut lines = Lines { source, line_end: header.line_end, next };
-    let mut body = Body { positions: Vec::new(), start: next, decimals: [0; 2], extra: 0 };
+    let mut body = Body { positions: Vec::new(), start: next, decimals: [0; 2], longer: 0, extra: 0 };
     let mut corners = Vec::new();
     for (index, element) in header.elements.iter().enumerate() {
         if index == vertices.index {
             body.start = lines.next;
             check_room(&vertices.element, Encoding::Ascii, body.start.byte, source)?;
             body.positions.reserve_exact(3 * vertices.element.count);
-            each_vertex(vertices, &mut lines, |vertex, fields, line| {
+            let (positions, decimals) = (&mut body.positions, &mut body.decimals);
+            body.longer += each_vertex(vertices, &mut lines, |vertex, fields, line| {
                 for (slot, field) in fields[..3].iter().enumerate() {
                     let word = &source[field.clone()];
                     let value = number::parse(word).ok_or_else(|| {
@@ -124,11 +122,11 @@ pub(super) fn read(
                             format!("vertex {vertex}: expected a finite number for {name}, found {shown}");
                         Error::at_line(line, message)
                     })?;
-                    body.positions.push(value);
-                    body.decimals[0] = body.decimals[0].max(number::decimals(word));
+                    positions.push(value);
+                    decimals[0] = decimals[0].max(number::decimals(word));
                 }
                 for field in fields[3..].iter().filter(|_| vertices.normals) {
-                    body.decimals[1] = body.decimals[1].max(number::decimals(&source[field.clone()]));
+                    decimals[1] = decimals[1].max(number::decimals(&source[field.clone()]));
                 }
                 Ok(())
             })?;
@@ -139,7 +137,7 @@ pub(super) fn read(
                 let line = lines.row(element, row)?;
                 let number = line.1;
                 corners.clear();
-                walk_row(element, source, line, |property, word| {
+                let is_longer = walk_row(element, source, line, |property, word| {
                     if wanted.is_some_and(|(_, list)| list == property) {
                         let word = &source[word];
                         corners.push(number::parse(word).ok_or_else(|| {
@@ -148,6 +146,7 @@ pub(super) fn read(
                     }
                     Ok(())
                 })?;
+                body.longer += usize::from(is_longer);
                 if let Some((what, _)) = wanted {
                     faces.add(what, row, &corners).map_err(|message| Error::at_line(number, message))?;
                 }

@@ -3,10 +3,10 @@
 use super::faces::Faces;
 use super::header::{Element, Encoding, Header, Kind};
 use super::scalar::ByteOrder;
-use super::Vertices;
+use super::{Body, Vertices};
 use crate::shape::Fact;
 
-pub(super) fn of(header: &Header, vertices: &Vertices, faces: &Faces, extra: usize) -> Vec<Fact> {
+pub(super) fn of(header: &Header, vertices: &Vertices, faces: &Faces, body: &Body) -> Vec<Fact> {
     let mut facts = Vec::new();
     let mut say = |what: &str, value: String| facts.push((what.to_string(), value));
     say(
@@ -61,10 +61,13 @@ pub(super) fn of(header: &Header, vertices: &Vertices, faces: &Faces, extra: usi
         say("texture", texture.clone());
     }
     if header.comments > 0 {
-        say("comments", format!("{} lines", header.comments));
+        say("comments", header.comments.to_string());
     }
-    if extra > 0 {
-        say("behind the last element", format!("{extra} bytes (carried over)"));
+    if body.longer > 0 {
+        say("more than the header says", format!("on {} lines (carried over)", body.longer));
+    }
+    if body.extra > 0 {
+        say("behind the last element", format!("{} bytes (carried over)", body.extra));
     }
     facts
 }

@@ -118,6 +118,8 @@ struct Body {
     start: Start,
     /// Most decimals of a position and of a normal, for ascii.
     decimals: [usize; 2],
+    /// Lines of an ascii file that have more than the header says.
+    longer: usize,
     /// Bytes behind the last element.
     extra: usize,
 }
@@ -132,7 +134,7 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
     };
     Ok(Parsed {
         dim: 3,
-        facts: facts::of(&header, &vertices, &faces, body.extra),
+        facts: facts::of(&header, &vertices, &faces, &body),
         positions: body.positions,
         faces: (!faces.triangles.is_empty()).then_some(faces.triangles),
         document: Box::new(Ply {

@@ -63,14 +63,12 @@ impl<'a> Words<'a> {
 /// The places of a triangle's numbers.
 struct Facet {
     normal: [Range<usize>; 3],
-    corners: [[Range<usize>; 3]; 3],
+    corners: [Range<usize>; 9],
+    positions: [f64; 9],
 }
 
 /// Shows `see` each facet; returns the names of the solids.
-fn each_facet<'a>(
-    words: &mut Words<'a>,
-    mut see: impl FnMut(&Words<'_>, Facet) -> Result<(), Error>,
-) -> Result<Vec<&'a [u8]>, Error> {
+fn each_facet<'a>(words: &mut Words<'a>, mut see: impl FnMut(Facet)) -> Result<Vec<&'a [u8]>, Error> {
     let mut names = Vec::new();
     let mut open = false;
     while let Some(word) = words.next() {
@@ -79,14 +77,19 @@ fn each_facet<'a>(
             let normal = words.three()?;
             words.expect("outer")?;
             words.expect("loop")?;
-            let mut corners: [[Range<usize>; 3]; 3] = Default::default();
-            for corner in &mut corners {
+            let mut corners: [Range<usize>; 9] = Default::default();
+            let mut positions = [0.0; 9];
+            for corner in 0..3 {
                 words.expect("vertex")?;
-                *corner = words.three()?;
+                for (k, word) in (3 * corner..).zip(words.three()?) {
+                    let value = number::parse(&words.source[word.clone()]);
+                    positions[k] = value.ok_or_else(|| words.wrong(Some(word.clone()), "a finite number"))?;
+                    corners[k] = word;
+                }
             }
             words.expect("endloop")?;
             words.expect("endfacet")?;
-            see(words, Facet { normal, corners })?;
+            see(Facet { normal, corners, positions });
         } else if words.is(&word, "endsolid") && open {
             words.rest_of_line();
             open = false;
@@ -106,18 +109,13 @@ fn each_facet<'a>(
 pub(super) fn read(source: &[u8]) -> Result<Parsed, Error> {
     let mut positions = Vec::new();
     let (mut decimals, mut normal_decimals) = (0, 0);
-    let names = each_facet(&mut Words { source, at: 0 }, |words, facet| {
-        for word in facet.corners.into_iter().flatten() {
-            let Some(value) = number::parse(&source[word.clone()]) else {
-                return Err(words.wrong(Some(word), "a finite number"));
-            };
-            positions.push(value);
-            decimals = decimals.max(number::decimals(&source[word]));
-        }
-        for word in facet.normal {
-            normal_decimals = normal_decimals.max(number::decimals(&source[word]));
-        }
-        Ok(())
+    let names = each_facet(&mut Words { source, at: 0 }, |facet| {
+        positions.extend(facet.positions);
+        let most = |words: &[Range<usize>]| {
+            words.iter().map(|w| number::decimals(&source[w.clone()])).max().unwrap_or(0)
+        };
+        decimals = decimals.max(most(&facet.corners));
+        normal_decimals = normal_decimals.max(most(&facet.normal));
     })?;
 
     const NAMED: usize = 20;
@@ -160,7 +158,7 @@ impl Document for Ascii {
         let normal_style = Style::new(self.normal_decimals, &[-1.0, 1.0], 1);
         let mut patcher = Patcher::new(source);
         let mut index = 0;
-        each_facet(&mut Words { source, at: 0 }, |_, facet| {
+        each_facet(&mut Words { source, at: 0 }, |facet| {
             let (before, after) = (triangle(moved.before, index), triangle(moved.after, index));
             index += 1;
             let read = |word: &Range<usize>| number::parse(&source[word.clone()]).unwrap_or(f64::NAN);
@@ -173,12 +171,11 @@ impl Document for Ascii {
                     }
                 }
             }
-            for ((word, &was), &value) in facet.corners.into_iter().flatten().zip(before).zip(after) {
+            for ((word, &was), &value) in facet.corners.into_iter().zip(before).zip(after) {
                 if style.differs(was, value) {
                     style.print(value, patcher.replace(word));
                 }
             }
-            Ok(())
         })?;
         Ok(Written { bytes: patcher.finish(), side_files: Vec::new() })
     }
