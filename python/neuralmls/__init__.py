@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from neuralmls.pipeline import deform
     from neuralmls.placement import farthest_points
     from neuralmls.shape import Shape, read
-    from neuralmls.weights import InverseDistanceWeights, NeuralWeights, Weights, softmax
+    from neuralmls.weights import InverseDistanceWeights, NeuralWeights, Weights
+    from neuralmls.weights.softmax import softmax
 
 __all__ = [
     "ArgumentError",
@@ -57,7 +58,7 @@ _HOMES = {
     "deform": "pipeline",
     "farthest_points": "placement",
     "read": "shape",
-    "softmax": "weights",
+    "softmax": "weights.softmax",
 }
 
 
