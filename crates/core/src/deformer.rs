@@ -160,3 +160,6 @@ impl Deformer {
         report(progress, 1.0)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -67,10 +67,11 @@ impl<'a, const D: usize> Handles<'a, D> {
         debug_assert!(!p.is_empty() && p.len() == q.len());
         let equal = vec![1.0; p.len()];
         let dominant = Dominant { index: 0, second: 1.0 / p.len() as f64 };
-        let moments = Moments::new(p, q, &equal, dominant);
+        let moments = Moments::new(p, q, &equal, dominant, None);
         let rotation = rotation::anchored(&moments.pq, &matrix::identity());
         let scale = similarity::scale(&moments, &rotation, 1.0);
-        let linear = affine::linear(&moments, &rotation);
+        let residuals = Moments::new(p, q, &equal, dominant, Some(&rotation));
+        let linear = affine::linear(&residuals, &rotation);
         Handles { p, q, transform, anchor: Anchor { rotation, scale, linear } }
     }
 
@@ -81,7 +82,8 @@ impl<'a, const D: usize> Handles<'a, D> {
 
     /// Where the point `x` goes, whose weights `relative` and `dominant` are as [`crate::softmax::relative_weights`] gives them.
     pub fn deform(&self, x: &[f64; D], relative: &[f64], dominant: Dominant) -> Local<D> {
-        let moments = Moments::new(self.p, self.q, relative, dominant);
+        let base = (self.transform == Transform::Affine).then_some(&self.anchor.linear);
+        let moments = Moments::new(self.p, self.q, relative, dominant, base);
         let map = match self.transform {
             Transform::Rigid => rotation::anchored(&moments.pq, &self.anchor.rotation),
             Transform::Similarity => {

@@ -6,8 +6,11 @@
 //!
 //! exactly. The plain sum `sum w_i (p_i - p*)(q_i - q*)^T` loses all its digits when one weight is close to 1; this one
 //! keeps them however small the temperature.
+//!
+//! The affine map is found as a correction of a base map G, from the residuals `b_i - G a_i` in place of `b_i`: where G is
+//! already right they are zero to the last digit, and no ill-conditioned system can blow them up.
 
-use super::matrix::Matrix;
+use super::matrix::{apply, Matrix};
 use crate::softmax::Dominant;
 
 /// Moments of one point, the second ones divided by its second-largest weight.
@@ -16,14 +19,20 @@ pub(super) struct Moments<const D: usize> {
     pub p_mean: [f64; D],
     /// `q* - p*`.
     pub shift: [f64; D],
-    /// `C / w_2`, `C = sum w_i (p_i - p*)(q_i - q*)^T`.
+    /// `C / w_2`, `C = sum w_i (p_i - p*)(q_i - q*)^T`; with a base map, of the residuals in place of q.
     pub pq: Matrix<D>,
     /// The same of p with itself.
     pub pp: Matrix<D>,
 }
 
 impl<const D: usize> Moments<D> {
-    pub(super) fn new(p: &[[f64; D]], q: &[[f64; D]], relative: &[f64], dominant: Dominant) -> Self {
+    pub(super) fn new(
+        p: &[[f64; D]],
+        q: &[[f64; D]],
+        relative: &[f64],
+        dominant: Dominant,
+        base: Option<&Matrix<D>>,
+    ) -> Self {
         let Dominant { index: k, second } = dominant;
         let (mut sum_a, mut sum_b, mut sum_shift) = ([0.0; D], [0.0; D], [0.0; D]);
         let (mut pq, mut pp) = ([[0.0; D]; D], [[0.0; D]; D]);
@@ -32,11 +41,17 @@ impl<const D: usize> Moments<D> {
                 continue;
             }
             let a: [f64; D] = std::array::from_fn(|c| p[i][c] - p[k][c]);
-            let b: [f64; D] = std::array::from_fn(|c| q[i][c] - q[k][c]);
+            let mut b: [f64; D] = std::array::from_fn(|c| q[i][c] - q[k][c]);
+            for c in 0..D {
+                sum_shift[c] += r * (b[c] - a[c]);
+            }
+            if let Some(base) = base {
+                let mapped = apply(base, &a);
+                b = std::array::from_fn(|c| b[c] - mapped[c]);
+            }
             for c in 0..D {
                 sum_a[c] += r * a[c];
                 sum_b[c] += r * b[c];
-                sum_shift[c] += r * (b[c] - a[c]);
                 for d in 0..D {
                     pq[c][d] += r * a[c] * b[d];
                     pp[c][d] += r * a[c] * a[d];

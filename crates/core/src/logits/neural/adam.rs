@@ -58,11 +58,14 @@ impl Adam {
 }
 
 fn descend(parameters: &mut [f32], moments: &mut [Moments], gradient: &[f32], rate: f32, correction: f32) {
+    // Rounded once: 1 - 0.999 computed in single precision is wrong by 1e-5.
     const B1: f32 = BETA_1 as f32;
     const B2: f32 = BETA_2 as f32;
+    const REST_1: f32 = (1.0 - BETA_1) as f32;
+    const REST_2: f32 = (1.0 - BETA_2) as f32;
     for ((parameter, [first, second]), g) in parameters.iter_mut().zip(moments).zip(gradient) {
-        *first = B1 * *first + (1.0 - B1) * g;
-        *second = B2 * *second + (1.0 - B2) * g * g;
+        *first = B1 * *first + REST_1 * g;
+        *second = B2 * *second + REST_2 * g * g;
         *parameter -= rate * *first / (second.sqrt() * correction + EPSILON);
     }
 }

@@ -165,3 +165,6 @@ pub(super) fn relu(values: &mut [f32]) {
         *v = v.max(0.0);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,127 @@
+//! The laws of the whole way, for classic weights (any other logits take the same path).
+
+use super::*;
+use crate::InverseDistance;
+use proptest::prelude::*;
+
+const ALL: [Transform; 3] = [Transform::Rigid, Transform::Similarity, Transform::Affine];
+
+fn bound(x: &[f64], p: &[f64], dim: usize, transform: Transform) -> Deformer {
+    let weights = InverseDistance::new(p, dim, Frame::IDENTITY, 1.0, 0.0).unwrap();
+    Deformer::new(x.to_vec(), dim, p, weights.logits(x, &mut |_| true).unwrap(), transform).unwrap()
+}
+
+fn deform(x: &[f64], p: &[f64], q: &[f64], dim: usize, transform: Transform) -> Vec<f64> {
+    bound(x, p, dim, transform).deform(q, 1.0, false, &mut |_| true).unwrap().positions
+}
+
+fn coordinates(points: usize) -> impl Strategy<Value = Vec<f64>> {
+    prop::collection::vec(-1.0..1.0f64, 3 * points)
+}
+
+proptest! {
+    #[test]
+    fn unmoved_control_points_return_the_input_bit_for_bit(
+        x in coordinates(20), p in coordinates(4), scale in -200i32..200, t in 0.01f64..100.0, dim in 1usize..4,
+    ) {
+        let scale = 10f64.powi(scale / 2);
+        let scaled = |v: &[f64]| -> Vec<f64> { v.iter().map(|c| c * scale).collect() };
+        let (x, p) = (scaled(&x), scaled(&p));
+        for transform in ALL {
+            let y = bound(&x, &p, dim, transform).deform(&p, t, true, &mut |_| true).unwrap().positions;
+            prop_assert!(x.iter().zip(&y).all(|(a, b)| a.to_bits() == b.to_bits()));
+        }
+    }
+
+    #[test]
+    fn translation_and_scale_of_the_world_do_not_matter(x in coordinates(10), p in coordinates(5), q in coordinates(5)) {
+        let world = |v: &[f64]| -> Vec<f64> { v.iter().map(|c| 40.0 * c + 7.0).collect() };
+        for transform in ALL {
+            let there = world(&deform(&x, &p, &q, 3, transform));
+            let here = deform(&world(&x), &world(&p), &world(&q), 3, transform);
+            for (a, b) in there.iter().zip(&here) {
+                prop_assert!((a - b).abs() < 2e-3, "{} {}", a, b);
+            }
+        }
+    }
+}
+
+#[test]
+fn half_a_million_metres_from_the_origin_millimetres_survive() {
+    let far = |v: &[f64]| -> Vec<f64> {
+        v.iter().zip([500_000.0, 6_000_000.0, 0.0].iter().cycle()).map(|(c, f)| c + f).collect()
+    };
+    let x: Vec<f64> = (0..300).map(|i| (f64::from(i) * 0.7).sin() * 2.0).collect();
+    let p = [-2.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0, 0.5];
+    let q = [-2.0, 0.0, 0.0, 2.0, 0.5, 0.0, 0.0, 2.5, 0.5];
+    let here = far(&deform(&x, &p, &q, 3, Transform::Rigid));
+    let there = deform(&far(&x), &far(&p), &far(&q), 3, Transform::Rigid);
+    for (a, b) in here.iter().zip(&there) {
+        assert!((a - b).abs() < 1e-5, "{a} {b}");
+    }
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let x: Vec<f64> = (0..9000).map(|i| (f64::from(i) * 0.7).sin()).collect();
+    let (p, q) =
+        ([0.5, 0.0, 0.0, -0.5, 0.1, 0.0, 0.0, 0.7, 0.3], [0.5, 0.3, 0.0, -0.5, 0.1, 0.2, 0.0, 0.9, 0.3]);
+    let here = deform(&x, &p, &q, 3, Transform::Similarity);
+    #[cfg(feature = "threads")]
+    for threads in [1, 2, 5] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        assert_eq!(pool.install(|| deform(&x, &p, &q, 3, Transform::Similarity)), here);
+    }
+    assert_eq!(here.len(), x.len());
+}
+
+#[test]
+fn the_maps_are_those_that_moved_the_points() {
+    // A rigid motion of all: every map is its rotation.
+    let (x, p) = ([0.1, 0.2, 0.4, -0.3], [0.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
+    let q = [0.0, 0.0, 0.0, 1.0, -1.0, 0.0];
+    let deformed = bound(&x, &p, 2, Transform::Rigid).deform(&q, 1.0, true, &mut |_| true).unwrap();
+    for map in deformed.maps.unwrap().chunks(4) {
+        for (a, b) in map.iter().zip([0.0, -1.0, 1.0, 0.0]) {
+            assert!((a - b).abs() < 1e-7, "{map:?}");
+        }
+    }
+    assert!((deformed.positions[0] + 0.2).abs() < 1e-7 && (deformed.positions[1] - 0.1).abs() < 1e-7);
+}
+
+#[test]
+fn all_points_in_one_place_move_together() {
+    let y = deform(
+        &[3.0; 6],
+        &[0.0, 0.0, 0.0, 6.0, 6.0, 6.0],
+        &[1.0, 0.0, 0.0, 7.0, 6.0, 6.0],
+        3,
+        Transform::Rigid,
+    );
+    for (a, b) in y.iter().zip([4.0, 3.0, 3.0, 4.0, 3.0, 3.0]) {
+        assert!((a - b).abs() < 1e-6, "{y:?}");
+    }
+}
+
+#[test]
+fn no_points_are_deformed_to_none() {
+    assert!(deform(&[], &[0.0], &[1.0], 1, Transform::Rigid).is_empty());
+}
+
+#[test]
+fn refuses_what_does_not_fit() {
+    let new = |x: &[f64], p: &[f64], logits: &[f32]| {
+        Deformer::new(x.to_vec(), 2, p, logits.to_vec(), Transform::Rigid).map(drop).unwrap_err().to_string()
+    };
+    assert!(new(&[0.0; 4], &[], &[]).contains("at least one"));
+    assert!(new(&[0.0; 4], &[0.0; 2], &[0.0]).contains("2 x 1"));
+    assert!(new(&[0.0; 4], &[0.0; 2], &[0.0, f32::NAN]).contains("(1, 0)"));
+    assert!(new(&[0.0; 3], &[0.0; 2], &[0.0]).contains("whole points"));
+    let deformer = bound(&[0.0; 2], &[1.0; 2], 2, Transform::Rigid);
+    for (q, t) in
+        [(vec![0.0; 4], 1.0), (vec![f64::NAN, 0.0], 1.0), (vec![0.0; 2], 0.0), (vec![0.0; 2], f64::NAN)]
+    {
+        assert!(deformer.deform(&q, t, false, &mut |_| true).is_err());
+    }
+    assert_eq!(deformer.deform(&[2.0; 2], 1.0, false, &mut |_| false).err(), Some(Error::Cancelled));
+}
