@@ -61,7 +61,7 @@ fn reads_elements_in_any_order_with_lists_anywhere() {
     let shape = ply(ODD);
     assert_eq!(shape.positions(), [0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0., 0.5, 0.5, 1.]);
     assert_eq!(shape.faces().unwrap(), [[0, 1, 2], [0, 2, 3], [0, 1, 4]]);
-    assert_eq!(fact(&shape, "faces"), "1 triangles, 1 quads");
+    assert_eq!(fact(&shape, "faces"), "2 (1 triangles, 1 quads)");
     assert_eq!(fact(&shape, "texture"), "wood.png");
     assert_eq!(fact(&shape, "element"), "1 edge: vertex1, vertex2 (carried over)");
     assert!(fact(&shape, "vertex properties").contains("tags"));
@@ -333,11 +333,26 @@ fn a_truncated_binary_file_is_refused_at_every_length() {
 
 #[test]
 fn real_files_keep_everything() {
-    check_data_files(Format::Ply, 2e-7, |shape, before, after| match fact(shape, "encoding").as_str() {
-        // Printed anew, a number keeps its value.
-        "ascii" => same_words(before, after, 1e-6),
-        _ => before == after,
-    });
+    // Compressed; rows without the list that the header promises; infinite; without x, y and z; without vertices.
+    let known = [
+        "biker.compressed.ply",
+        "issue623.ply",
+        "float_inf_point_cloud.ply",
+        "sized_dims.ply",
+        "unsized_dims.ply",
+        "no_vertex.ply",
+        "empty.ply",
+        "ply_empty_ascii.ply",
+        "ply_empty_bin.ply",
+        "ply_empty_header.ply",
+    ];
+    let refused =
+        check_data_files(Format::Ply, 2e-7, |shape, before, after| match fact(shape, "encoding").as_str() {
+            // Printed anew, a number keeps its value.
+            "ascii" => same_words(before, after, 1e-6),
+            _ => before == after,
+        });
+    assert!(refused.iter().all(|name| known.contains(&name.as_str())), "{refused:?}");
 }
 
 /// A file of random properties, elements and encoding; and the positions in it.

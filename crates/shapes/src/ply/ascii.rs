@@ -105,7 +105,7 @@ pub(super) fn read(
 ) -> Result<Body, Error> {
     let next = Start { byte: header.body, line: header.body_line };
     let mut lines = Lines { source, line_end: header.line_end, next };
-    let mut body = Body { positions: Vec::new(), start: next, decimals: [0; 2], longer: 0, extra: 0 };
+    let mut body = Body { positions: Vec::new(), start: next, decimals: 0, longer: 0, extra: 0 };
     let mut corners = Vec::new();
     for (index, element) in header.elements.iter().enumerate() {
         if index == vertices.index {
@@ -123,10 +123,7 @@ pub(super) fn read(
                         Error::at_line(line, message)
                     })?;
                     positions.push(value);
-                    decimals[0] = decimals[0].max(number::decimals(word));
-                }
-                for field in fields[3..].iter().filter(|_| vertices.normals) {
-                    decimals[1] = decimals[1].max(number::decimals(&source[field.clone()]));
+                    *decimals = number::decimals(word).max(*decimals);
                 }
                 Ok(())
             })?;
@@ -163,13 +160,12 @@ pub(super) fn write(
     vertices: &Vertices,
     line_end: u8,
     start: Start,
-    decimals: [usize; 2],
+    decimals: usize,
     moved: &Moved<'_>,
 ) -> Result<Vec<u8>, Error> {
     let mut lines = Lines { source, line_end, next: start };
     let mut patcher = Patcher::new(source);
-    // Normals are of the size of 1.
-    let styles = [Style::new(decimals[0], moved.before, 3), Style::new(decimals[1], &[-1.0, 1.0], 1)];
+    let style = Style::new(decimals, moved.before, 3);
     each_vertex(vertices, &mut lines, |vertex, fields, _| {
         let at = |slot: usize| number::parse(&source[fields[3 + slot].clone()]).unwrap_or(f64::NAN);
         let turned = vertices.turned(moved, vertex, [0, 1, 2].map(at));
@@ -179,9 +175,11 @@ pub(super) fn write(
                 (_, Some(normal)) => (at(slot - 3), normal[slot - 3]),
                 (_, None) => continue,
             };
-            let integer = vertices.scalars[slot].is_integer();
-            let (style, after) =
-                if integer { (Style::Fixed(0), after.round()) } else { (styles[slot / 3], after) };
+            let (style, after) = match vertices.scalars[slot] {
+                scalar if scalar.is_integer() => (Style::Fixed(0), after.round()),
+                _ if slot < 3 => (style, after),
+                _ => (Style::for_normal([3, 4, 5].map(|k| &source[fields[k].clone()])), after),
+            };
             if style.differs(before, after) {
                 style.print(after, patcher.replace(fields[slot].clone()));
             }

@@ -93,7 +93,7 @@ pub(super) fn read(
 ) -> Result<Body, Error> {
     let encoding = Encoding::Binary(order);
     let start = Start { byte: header.body, line: 0 };
-    let mut body = Body { positions: Vec::new(), start, decimals: [0; 2], longer: 0, extra: 0 };
+    let mut body = Body { positions: Vec::new(), start, decimals: 0, longer: 0, extra: 0 };
     let mut at = header.body;
     let mut corners = Vec::new();
     for (index, element) in header.elements.iter().enumerate() {

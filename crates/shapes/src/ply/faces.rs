@@ -1,12 +1,12 @@
 //! Polygons and strips as triangles.
 
 use super::header::{Header, Kind};
+use crate::facts::FaceSizes;
 
 /// The triangles found so far, and where the header says that there are more.
 pub(super) struct Faces {
     pub triangles: Vec<[u32; 3]>,
-    /// How many faces have fewer than three corners, three, four, more.
-    pub kinds: [usize; 4],
+    pub sizes: FaceSizes,
     /// How many strips.
     pub strips: usize,
     /// The element and the property of the polygons' corners.
@@ -35,7 +35,7 @@ impl Faces {
         };
         Faces {
             triangles: Vec::new(),
-            kinds: [0; 4],
+            sizes: FaceSizes::default(),
             strips: 0,
             polygons_in: list("face"),
             strips_in: list("tristrips"),
@@ -74,7 +74,7 @@ impl Faces {
                 fan[1] = fan[2];
             }
         }
-        self.kinds[corners.len().clamp(2, 5) - 2] += 1;
+        self.sizes.add(corners.len());
         Ok(())
     }
 

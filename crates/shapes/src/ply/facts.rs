@@ -18,14 +18,10 @@ pub(super) fn of(header: &Header, vertices: &Vertices, faces: &Faces, body: &Bod
         }
         .into(),
     );
-    let names = ["faces of fewer than three corners", "triangles", "quads", "faces of five corners or more"];
-    let kinds: Vec<String> = (faces.kinds.iter().zip(names))
-        .filter(|(&count, _)| count > 0)
-        .map(|(count, name)| format!("{count} {name}"))
-        .chain((faces.strips > 0).then(|| format!("{} triangle strips", faces.strips)))
-        .collect();
-    if !kinds.is_empty() {
-        say("faces", kinds.join(", "));
+    faces.sizes.tell(&mut facts);
+    let mut say = |what: &str, value: String| facts.push((what.to_string(), value));
+    if faces.strips > 0 {
+        say("triangle strips", faces.strips.to_string());
     }
     if let Some(scalar) = vertices.scalars[..3].iter().find(|scalar| scalar.is_integer()) {
         say("positions", format!("whole numbers ({}): written rounded to the nearest", scalar.name()));
@@ -75,9 +71,10 @@ pub(super) fn of(header: &Header, vertices: &Vertices, faces: &Faces, body: &Bod
 /// The names of an element's properties, runs of numbered ones (`f_rest_0 to f_rest_44`) in short.
 fn names_of(element: &Element, take: impl Fn(usize) -> bool) -> String {
     let stem = |name: &str| name.trim_end_matches(|c: char| c.is_ascii_digit()).to_string();
+    const LONGEST: usize = 400;
     let taken: Vec<_> =
         element.properties.iter().enumerate().filter(|(i, _)| take(*i)).map(|(_, p)| p).collect();
-    taken
+    let mut names = taken
         .chunk_by(|a, b| stem(&a.name) == stem(&b.name) && stem(&a.name) != a.name)
         .map(|run| match run {
             [one] if matches!(one.kind, Kind::List { .. }) => format!("{} (list)", one.name),
@@ -85,5 +82,10 @@ fn names_of(element: &Element, take: impl Fn(usize) -> bool) -> String {
             _ => run.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", "),
         })
         .collect::<Vec<_>>()
-        .join(", ")
+        .join(", ");
+    if let Some((end, _)) = names.char_indices().nth(LONGEST) {
+        names.truncate(end);
+        names += "...";
+    }
+    names
 }

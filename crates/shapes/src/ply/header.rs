@@ -115,7 +115,7 @@ pub(super) fn read(source: &[u8]) -> Result<Header, Error> {
                 comments += 1;
                 if words.next() == Some(b"TextureFile") {
                     let name = line.windows(11).position(|w| w == b"TextureFile").map_or(0, |n| n + 11);
-                    texture = Some(String::from_utf8_lossy(line[name..].trim_ascii()).into_owned());
+                    texture = Some(printable(line[name..].trim_ascii()));
                 }
             }
             Some(b"format") => {
@@ -141,12 +141,14 @@ pub(super) fn read(source: &[u8]) -> Result<Header, Error> {
             }
             Some(b"element") => {
                 let (name, count) = (words.next().unwrap_or(b""), words.next().unwrap_or(b""));
-                let name = String::from_utf8_lossy(name).into_owned();
+                let name = printable(name);
                 let Some(count) = std::str::from_utf8(count).ok().and_then(|c| c.parse().ok()) else {
                     let shown = text::quote(count);
                     return Err(wrong(format!("expected 'element name count', found the count {shown}")));
                 };
-                if elements.iter().any(|e| e.name == name) {
+                // Of the others there may be several: all are carried over.
+                let read = matches!(name.as_str(), "vertex" | "face" | "tristrips");
+                if read && elements.iter().any(|e| e.name == name) {
                     let shown = text::quote(name.as_bytes());
                     return Err(wrong(format!("there is a second element {shown}")));
                 }
@@ -190,6 +192,11 @@ fn property<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Result<Property, S
     };
     match word() {
         b"" => Err("the property has no name".into()),
-        name => Ok(Property { name: String::from_utf8_lossy(name).into_owned(), kind }),
+        name => Ok(Property { name: printable(name), kind }),
     }
+}
+
+/// A name as text that does no harm on a terminal.
+fn printable(name: &[u8]) -> String {
+    String::from_utf8_lossy(name).replace(char::is_control, "?")
 }

@@ -116,8 +116,8 @@ struct Start {
 struct Body {
     positions: Vec<f64>,
     start: Start,
-    /// Most decimals of a position and of a normal, for ascii.
-    decimals: [usize; 2],
+    /// Most decimals of a position, for ascii.
+    decimals: usize,
     /// Lines of an ascii file that have more than the header says.
     longer: usize,
     /// Bytes behind the last element.
@@ -170,7 +170,7 @@ struct Ply {
     line_end: u8,
     vertices: Vertices,
     start: Start,
-    decimals: [usize; 2],
+    decimals: usize,
 }
 
 impl Document for Ply {

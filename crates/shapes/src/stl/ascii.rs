@@ -3,6 +3,7 @@
 use super::{faces, moved_normal, triangle};
 use crate::document::{Document, Moved, Parsed};
 use crate::error::Error;
+use crate::facts::Names;
 use crate::number::{self, Style};
 use crate::shape::Written;
 use crate::text::{self, Patcher};
@@ -108,43 +109,29 @@ fn each_facet<'a>(words: &mut Words<'a>, mut see: impl FnMut(Facet)) -> Result<V
 
 pub(super) fn read(source: &[u8]) -> Result<Parsed, Error> {
     let mut positions = Vec::new();
-    let (mut decimals, mut normal_decimals) = (0, 0);
-    let names = each_facet(&mut Words { source, at: 0 }, |facet| {
+    let mut decimals = 0;
+    let solids = each_facet(&mut Words { source, at: 0 }, |facet| {
         positions.extend(facet.positions);
-        let most = |words: &[Range<usize>]| {
-            words.iter().map(|w| number::decimals(&source[w.clone()])).max().unwrap_or(0)
-        };
-        decimals = decimals.max(most(&facet.corners));
-        normal_decimals = normal_decimals.max(most(&facet.normal));
+        let most = facet.corners.iter().map(|word| number::decimals(&source[word.clone()])).max();
+        decimals = decimals.max(most.unwrap_or(0));
     })?;
-
-    const NAMED: usize = 20;
-    let name = |name: &&[u8]| match String::from_utf8_lossy(name) {
-        name if name.is_empty() => "(no name)".into(),
-        name => name.into_owned(),
-    };
-    let mut listed = names.iter().take(NAMED).map(name).collect::<Vec<_>>().join(", ");
-    if names.len() > NAMED {
-        listed += &format!(" and {} more", names.len() - NAMED);
-    }
-    let facts = [
-        ("encoding", "ascii".to_string()),
-        ("solids", listed),
-        ("normals", "those of moved triangles computed anew".into()),
-    ];
+    let mut facts = vec![("encoding".into(), "ascii".into())];
+    let mut names = Names::default();
+    solids.into_iter().for_each(|name| names.add(name));
+    names.tell("solids", &mut facts);
+    facts.push(("normals".into(), "those of moved triangles computed anew".into()));
     Ok(Parsed {
         dim: 3,
         faces: Some(faces(positions.len() / 3)),
         positions,
-        facts: facts.map(|(what, value)| (what.to_string(), value)).into(),
-        document: Box::new(Ascii { decimals, normal_decimals }),
+        facts,
+        document: Box::new(Ascii { decimals }),
     })
 }
 
 struct Ascii {
-    /// Most decimals of a position, and of a normal.
+    /// Most decimals of a position.
     decimals: usize,
-    normal_decimals: usize,
 }
 
 impl Document for Ascii {
@@ -154,8 +141,6 @@ impl Document for Ascii {
 
     fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {
         let style = Style::new(self.decimals, moved.before, 3);
-        // Facet normals are of length 1.
-        let normal_style = Style::new(self.normal_decimals, &[-1.0, 1.0], 1);
         let mut patcher = Patcher::new(source);
         let mut index = 0;
         each_facet(&mut Words { source, at: 0 }, |facet| {
@@ -165,6 +150,7 @@ impl Document for Ascii {
             let [x, y, z] = &facet.normal;
             let old = [read(x), read(y), read(z)];
             if let Some(normal) = moved_normal(before, after, old) {
+                let normal_style = Style::for_normal([x, y, z].map(|word| &source[word.clone()]));
                 for ((word, was), value) in facet.normal.into_iter().zip(old).zip(normal) {
                     if was.is_nan() || normal_style.differs(was, value) {
                         normal_style.print(value, patcher.replace(word));

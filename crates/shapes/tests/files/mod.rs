@@ -1,5 +1,8 @@
 //! What the tests of several formats share: reading bytes, bending shapes, and the real files of the data folder.
 
+// Each test uses a part of it.
+#![allow(dead_code)]
+
 use neuralmls_shapes::{Error, Format, Shape};
 use std::path::{Path, PathBuf};
 
@@ -8,7 +11,6 @@ pub fn read(bytes: &[u8], format: Format) -> Result<Shape, Error> {
 }
 
 /// The message of a refusal, which must be one.
-#[allow(dead_code)]
 pub fn refusal(bytes: &[u8], format: Format) -> String {
     match read(bytes, format) {
         Ok(_) => panic!("expected a refusal"),
@@ -55,8 +57,13 @@ pub fn data_files(extension: &str) -> Vec<PathBuf> {
 
 /// Reads every file of the data folder with the ending, and checks each: unmoved it is the same bytes; bent it is again a file
 /// whose positions are as asked for to `precision` of the shape's largest coordinate, with the same faces; bent back, it is the file as it was, up to
-/// what `same` forgives. Prints a table.
-pub fn check_data_files(format: Format, precision: f64, same: impl Fn(&Shape, &[u8], &[u8]) -> bool) {
+/// what `same` forgives. Prints a table, and returns the names of the files that were refused.
+pub fn check_data_files(
+    format: Format,
+    precision: f64,
+    same: impl Fn(&Shape, &[u8], &[u8]) -> bool,
+) -> Vec<String> {
+    let mut refused = Vec::new();
     for path in data_files(format.extensions()[0]) {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
         let bytes = std::fs::read(&path).unwrap();
@@ -65,6 +72,7 @@ pub fn check_data_files(format: Format, precision: f64, same: impl Fn(&Shape, &[
             Err(error) => {
                 println!("{name:45} refused: {error}");
                 assert!(!error.message.is_empty());
+                refused.push(name);
                 continue;
             }
         };
@@ -100,10 +108,10 @@ pub fn check_data_files(format: Format, precision: f64, same: impl Fn(&Shape, &[
         let faces = shape.faces().map_or(0, <[_]>::len);
         println!("{name:45} {count:7} positions {faces:7} triangles  {}", facts.join(" | "));
     }
+    refused
 }
 
 /// Whether two text files have the same words, numbers compared as such: to `tolerance` of the larger of 1 and the number.
-#[allow(dead_code)]
 pub fn same_words(a: &[u8], b: &[u8], tolerance: f64) -> bool {
     let (a, b) = (String::from_utf8_lossy(a), String::from_utf8_lossy(b));
     let close = |a: &str, b: &str| {
