@@ -1,0 +1,136 @@
+"""`neuralmls deform`: a shape, control points, and the same file with its shape bent."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+
+import typer
+
+from neuralmls.cli import console, outputs
+from neuralmls.cli.stages import Stages
+from neuralmls.cli.weights import (
+    AlphaOption,
+    EpsilonOption,
+    SeedOption,
+    StepsOption,
+    TemperatureOption,
+    WeightsChoice,
+    WeightsOption,
+    WidthOption,
+)
+from neuralmls.errors import ArgumentError
+
+if TYPE_CHECKING:
+    from neuralmls.cli.deformation import Deformation
+    from neuralmls.shape import Shape
+
+TransformName: TypeAlias = Literal["rigid", "similarity", "affine"]
+
+
+def deform(
+    shape: Annotated[
+        Path, typer.Argument(metavar="SHAPE", help="The shape: OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV or NPY.")
+    ],
+    points: Annotated[Path, typer.Option(help="The control points and their targets, JSON or CSV.")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="The file to write, of the shape's format; - for standard output.")
+    ],
+    weights: WeightsOption = "neural",
+    transform: Annotated[TransformName, typer.Option(help="What may happen to the shape locally.")] = "rigid",
+    temperature: TemperatureOption = 1.0,
+    alpha: AlphaOption = None,
+    epsilon: EpsilonOption = None,
+    width: WidthOption = None,
+    steps: StepsOption = None,
+    seed: SeedOption = None,
+    move: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=DX,DY,DZ", help="Move a target, from where the file has it; may be repeated."),
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Summary as JSON, for machines.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No summary and no progress bar.")] = False,
+    verbose: Annotated[bool, typer.Option("--verbose", help="Every control point in the summary.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite files that are there.")] = False,
+) -> None:
+    """Bend a shape by its control points.
+
+    Writes the same file with new positions. Everything else in the file is carried over; unmoved control points give the very same bytes.
+
+    Example: neuralmls deform chair.obj --points chair.json -o bent.obj
+    """
+    choice = WeightsChoice(weights, alpha, epsilon, width, steps, seed)
+    offsets = _offsets(move or [])
+    to_stdout = output == outputs.STANDARD_OUTPUT
+    if not to_stdout:
+        outputs.check_output(output, force=force, inputs=[shape, points])
+
+    from neuralmls.arrays import as_number
+    from neuralmls.cli import deformation, summary
+    from neuralmls.control_points import ControlPoints
+    from neuralmls.shape import read
+
+    as_number("temperature", temperature, 0)
+    stages = Stages(quiet=quiet)
+    with stages.stage("reading"):
+        source = read(shape)
+        if not to_stdout:
+            outputs.check_ending(output, source.extensions, f"{source.format} is not converted")
+        deformation.check_size(source)
+        control_points = ControlPoints.read(points).moved(offsets)
+    warnings = control_points.check(source.bounds)
+    if (control_points.sources == control_points.targets).all():
+        warnings.append("no control point is moved, so that the output is the input")
+    for sentence in warnings:
+        console.warning(sentence)
+    result = deformation.deformed(source, control_points, choice, transform, temperature, stages)
+    with stages.stage("writing"):
+        files = _write(source, result, output, force=force)
+    told = summary.summary(source, control_points, choice, transform, temperature, result)
+    told |= {"output": str(output), "files": files, "warnings": warnings, "seconds": stages.seconds}
+    out = sys.stderr if to_stdout else sys.stdout
+    if json:
+        console.document(told, out)
+    elif not quiet:
+        summary.show(told, everything=verbose, file=out)
+
+
+def _offsets(moves: list[str]) -> dict[str, list[float]]:
+    """What `--move NAME=dx,dy,dz` says; a name may have = in it."""
+    offsets: dict[str, list[float]] = {}
+    for text in moves:
+        name, equals, numbers = text.rpartition("=")
+        try:
+            offset = [float(number) for number in numbers.split(",")]
+        except ValueError:
+            offset = []
+        if not equals or not name or not offset:
+            raise ArgumentError(f"--move: expected NAME=dx,dy,dz, found '{text}'")
+        if name in offsets:
+            raise ArgumentError(f"--move: '{name}' is moved twice")
+        offsets[name] = offset
+    return offsets
+
+
+def _write(shape: Shape, result: Deformation, output: Path, *, force: bool) -> list[str]:
+    """Write the shape, and return the files written."""
+    if output == outputs.STANDARD_OUTPUT:
+        data, side_files = shape.encode(result.positions, maps=result.maps)
+        if side_files:
+            raise ArgumentError(
+                f"standard output takes one file, but this {shape.format} is written with '{next(iter(side_files))}' "
+                "beside it: name an output file"
+            )
+        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.flush()
+        return []
+    if shape.format == "glTF" and not force:  # its buffers keep their names, which may be taken, by the input's own
+        for name in shape.encode(result.positions, maps=result.maps)[1]:
+            beside = output.parent / name
+            if beside.exists():
+                raise ArgumentError(
+                    f"{output}: '{beside}', which is written beside it, is there already: "
+                    "write into another folder, or overwrite it with --force"
+                )
+    return [str(path) for path in shape.write(output, result.positions, maps=result.maps)]

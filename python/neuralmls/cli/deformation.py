@@ -1,0 +1,70 @@
+"""From a shape and control points to positions, stage by stage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from neuralmls.cli.stages import Stages
+from neuralmls.cli.weights import WeightsChoice
+from neuralmls.control_points import ControlPoints
+from neuralmls.deformer import Deformer, Floats, Transform
+from neuralmls.errors import FileError
+from neuralmls.shape import Shape
+from neuralmls.weights import InverseDistanceWeights, NeuralWeights
+
+
+@dataclass(frozen=True)
+class Deformation:
+    """A shape's new positions, and how far each control point ended from its target."""
+
+    positions: Floats
+    maps: NDArray[np.float64] | None
+    weights: NeuralWeights | InverseDistanceWeights
+    missed: NDArray[np.float64]
+
+
+def check_size(shape: Shape) -> None:
+    """Refuse a shape without any extent, which there is nothing to measure by.
+
+    Raises
+    ------
+    FileError
+        All vertices are in one place.
+    """
+    if not longest_side(shape) > 0:
+        count = len(shape.positions)
+        found = "there is only one vertex" if count == 1 else f"all {count} vertices are in one place"
+        raise FileError(f"{shape.path}: {found}, so that there is no size to measure by")
+
+
+def longest_side(shape: Shape) -> float:
+    """The longest side of the shape's box, in file units."""
+    low, high = shape.bounds
+    return float((high - low).max())
+
+
+def deformed(
+    shape: Shape,
+    points: ControlPoints,
+    choice: WeightsChoice,
+    transform: Transform,
+    temperature: float,
+    stages: Stages,
+) -> Deformation:
+    """Fit the weights, bind the shape to them, and move the control points to their targets."""
+    with stages.stage("training" if choice.kind == "neural" else "weights") as report:
+        weights = choice.make(points.sources, shape.bounds, report)
+    with stages.stage("binding") as report:
+        deformer = Deformer(shape.positions, weights, transform=transform, progress=report)
+    with stages.stage("moving") as report:
+        maps: NDArray[np.float64] | None = None
+        if shape.has_normals:
+            y, maps = deformer.deform(points.targets, temperature, return_maps=True, progress=report)
+        else:
+            y = deformer.deform(points.targets, temperature, progress=report)
+        handles = Deformer(points.sources, weights, transform=transform)
+        missed = np.linalg.norm(handles.deform(points.targets, temperature) - points.targets, axis=1)
+    return Deformation(y, maps, weights, missed)

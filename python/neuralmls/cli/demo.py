@@ -1,0 +1,78 @@
+"""`neuralmls demo`: a chair with longer legs and a leaning back, by neural and by classic weights."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from neuralmls.cli import console, outputs
+from neuralmls.cli.sample import sample_files, write_sample
+from neuralmls.cli.stages import Stages
+from neuralmls.cli.weights import Kind, WeightsChoice
+from neuralmls.errors import FileError, NeuralMLSError
+
+RESULTS: dict[str, Kind] = {"neural": "neural", "classic": "inverse-distance"}
+
+
+def demo(
+    output: Annotated[Path, typer.Option("--output", "-o", help="The folder to write into.")] = Path("out"),
+    force: Annotated[bool, typer.Option("--force", help="Overwrite files that are there.")] = False,
+) -> None:
+    """Bend a sample chair with neural and classic weights.
+
+    Its legs get longer, its back leans. Writes the shapes and a picture of them.
+    """
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"{output}: cannot make this folder: {error.strerror or error}") from error
+    chair, picture = output / "chair.obj", output / "chair.png"
+    deformed = {name: output / f"chair-{name}.obj" for name in RESULTS}
+    for file in (*sample_files(chair), *deformed.values(), picture):
+        outputs.check_output(file, force=force)
+    points = sample_files(chair)[2]
+
+    from neuralmls.cli.deformation import deformed as deform
+    from neuralmls.control_points import ControlPoints
+    from neuralmls.shape import read
+
+    write_sample("chair", chair)
+    source, control_points = read(chair), ControlPoints.read(points)
+    said = [(str(chair), "the chair as it is"), (str(points), f"its {len(control_points)} control points and targets")]
+    for name, kind in RESULTS.items():
+        stages = Stages()
+        result = deform(source, control_points, WeightsChoice(kind), "rigid", 1.0, stages)
+        source.write(deformed[name], result.positions, maps=result.maps)
+        said.append((str(deformed[name]), f"bent with {name} weights, {sum(stages.seconds.values()):.2f} s"))
+    missing = None
+    try:
+        _draw([chair, *deformed.values()], points, picture)
+        said.append((str(picture), "all three side by side: look here first"))
+    except FileError:
+        raise
+    except NeuralMLSError as error:  # no PyVista, or nothing to draw with
+        missing = str(error)
+    console.pairs(said, sys.stdout)
+    if missing is not None:
+        console.warning(f"there is no picture: {missing}")
+    print("\nTry next:")
+    taller = output / "taller.obj"
+    console.line(f"  neuralmls deform {chair} --points {points} -o {taller} \\", sys.stdout)
+    console.line(f"    --move {control_points.names[0]}=0,-0.2,0", sys.stdout)
+    console.line(f"  neuralmls inspect {chair}", sys.stdout)
+    print("  neuralmls points YOUR_SHAPE -o points.json")
+
+
+def _draw(shapes: list[Path], points: Path, picture: Path) -> None:
+    from neuralmls.control_points import ControlPoints
+    from neuralmls.figures.render import Panel, render
+    from neuralmls.shape import read
+
+    panels = []
+    for title, path in zip(["source", *RESULTS], shapes, strict=True):
+        shape = read(path)
+        panels.append(Panel(title, shape.positions, shape.faces))
+    render(panels, picture, control_points=ControlPoints.read(points))

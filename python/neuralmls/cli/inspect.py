@@ -1,0 +1,52 @@
+"""`neuralmls inspect`: what is in a file, and what a deformation does with it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from neuralmls.cli import console
+
+
+def inspect(
+    shape: Annotated[
+        Path, typer.Argument(metavar="SHAPE", help="The shape: OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV or NPY.")
+    ],
+    json: Annotated[bool, typer.Option("--json", help="As JSON, for machines.")] = False,
+) -> None:
+    """Show what is in a file, and what a deformation will carry over."""
+    from neuralmls.shape import read
+
+    source = read(shape)
+    low, high = source.bounds.tolist()
+    size = [b - a for a, b in zip(low, high, strict=True)]
+    told: dict[str, Any] = {
+        "file": str(shape),
+        "bytes": shape.stat().st_size,
+        "format": source.format,
+        "vertices": len(source.positions),
+        "dimension": source.positions.shape[1],
+        "triangles": 0 if source.faces is None else len(source.faces),
+        "bounds": [low, high],
+        "size": size,
+        "holds": dict(source.facts),
+        "turns_normals": source.has_normals,
+    }
+    if json:
+        console.document(told)
+        return
+    console.line(f"{shape}: {source.format}, {told['bytes']:,} bytes", sys.stdout)
+    rows = [("vertices", f"{told['vertices']:,}")]
+    if told["triangles"]:
+        rows.append(("triangles", f"{told['triangles']:,}"))
+    rows += [("box", f"{_place(low)} to {_place(high)}"), ("size", " x ".join(f"{length:.6g}" for length in size))]
+    console.pairs([*rows, *source.facts], sys.stdout)
+    turned = "normals and tangents turn with the surface, " if source.has_normals else ""
+    console.line(f"A deformation moves the positions; {turned}everything else is carried over as it is.", sys.stdout)
+
+
+def _place(point: list[float]) -> str:
+    return "(" + ", ".join(f"{value:.6g}" for value in point) + ")"

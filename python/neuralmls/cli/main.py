@@ -1,0 +1,87 @@
+"""The entry point: runs a command, and says what went wrong in one sentence."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+
+import typer
+from typer.main import get_command
+
+from neuralmls.cli import console
+from neuralmls.cli.deform import deform
+from neuralmls.cli.demo import demo
+from neuralmls.cli.inspect import inspect
+from neuralmls.cli.points import points
+from neuralmls.cli.render import render
+from neuralmls.cli.sample import sample
+from neuralmls.errors import ArgumentError, NeuralMLSError
+
+BAD_DATA, WRONG_USE, INTERRUPTED = 1, 2, 130
+
+# Plain help: it starts at once, and is as wide as the terminal wants it.
+app = typer.Typer(
+    name="neuralmls",
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
+for command in (deform, inspect, points, render, sample, demo):
+    app.command()(command)
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from neuralmls import __version__
+
+        print(f"neuralmls {__version__}")
+        raise typer.Exit
+
+
+@app.callback(epilog="Start with: neuralmls demo")
+def neuralmls(
+    version: bool = typer.Option(False, "--version", callback=_version, is_eager=True, help="Show the version."),
+) -> None:
+    """Bend any 3D shape by a few control points; everything else in its file stays as it was."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code: 0, 1 for bad data, 2 for wrong use, 130 when interrupted."""
+    given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(AttributeError, ValueError):  # a terminal that cannot show a name still shows the rest
+            stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
+    try:
+        code = get_command(app)(given, prog_name="neuralmls", standalone_mode=False)
+        sys.stdout.flush()
+        return code if isinstance(code, int) else 0
+    except ArgumentError as error:
+        console.error(str(error))
+        return WRONG_USE
+    except NeuralMLSError as error:
+        console.error(str(error))
+        return BAD_DATA
+    except typer.TyperException as error:
+        console.error(_usage(error))
+        return WRONG_USE
+    except (KeyboardInterrupt, typer.Abort):
+        console.line("neuralmls: interrupted; nothing was written")
+        return INTERRUPTED
+    except BrokenPipeError:
+        with suppress(OSError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python complains at its end
+        return BAD_DATA
+    except MemoryError:
+        console.error("there is not enough memory for this")
+        return BAD_DATA
+
+
+def _usage(error: typer.TyperException) -> str:
+    """A usage error of typer's as one sentence, with where to read on."""
+    sentence = error.format_message().rstrip(".").replace("\n", " ")
+    context = getattr(error, "ctx", None)
+    path = context.command_path if context is not None else "neuralmls"
+    return f"{sentence[:1].lower()}{sentence[1:]}; see {path} --help"

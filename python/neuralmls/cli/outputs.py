@@ -1,0 +1,56 @@
+"""Files that a command is to write: refused before any work is done, if they cannot or should not be."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from neuralmls.errors import ArgumentError, FileError
+
+STANDARD_OUTPUT = Path("-")
+
+
+def check_output(path: Path, *, force: bool, inputs: Iterable[Path] = ()) -> None:
+    """Refuse a path that is a folder, is in none or in one that is not writable, or has a file already.
+
+    Raises
+    ------
+    ArgumentError
+        There is such a file, and no `force`; the path is an input.
+    FileError
+        Nothing can be written there.
+    """
+    for other in inputs:
+        if same_file(path, other) and not force:
+            raise ArgumentError(f"{path}: the output is the input itself; --force overwrites it")
+    if path.is_dir():
+        raise FileError(f"{path}: cannot write here: this is a folder")
+    if path.is_file() and not force:
+        raise ArgumentError(f"{path}: there is such a file already; --force overwrites it")
+    folder = path.parent
+    if not folder.is_dir():
+        raise FileError(f"{path}: cannot write here: there is no folder '{folder}'")
+    if not os.access(folder, os.W_OK):
+        raise FileError(f"{path}: cannot write here: the folder '{folder}' is not writable")
+
+
+def check_ending(path: Path, endings: Iterable[str], what: str) -> None:
+    """Refuse a path that does not end as files of its kind do.
+
+    Raises
+    ------
+    ArgumentError
+        It has another ending.
+    """
+    allowed = [f".{ending}" for ending in endings]
+    if path.suffix.lower() not in allowed:
+        raise ArgumentError(f"{path}: expected a name that ends in {' or '.join(allowed)}, for {what}")
+
+
+def same_file(one: Path, other: Path) -> bool:
+    """Whether two paths are one file that exists."""
+    try:
+        return one.samefile(other)
+    except OSError:
+        return False

@@ -1,0 +1,49 @@
+"""`neuralmls points`: control points spread over a shape, to start from."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from neuralmls.cli import console, outputs
+
+
+def points(
+    shape: Annotated[Path, typer.Argument(metavar="SHAPE", help="The shape to put them on.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="The control-point file to write, .json or .csv.")],
+    count: Annotated[int, typer.Option(help="How many.")] = 12,
+    seed: Annotated[int, typer.Option(help="Of the samples of the surface.")] = 0,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite files that are there.")] = False,
+) -> None:
+    """Spread control points over a shape, to start from.
+
+    Each is as far from the others as can be. Rename them and set their targets in the file, or move them with: neuralmls deform --move
+    """
+    outputs.check_ending(output, ("json", "csv"), "a file of control points")
+    outputs.check_output(output, force=force, inputs=[shape])
+
+    from neuralmls.arrays import as_count
+    from neuralmls.cli.deformation import check_size, longest_side
+    from neuralmls.control_points import ControlPoints
+    from neuralmls.placement import farthest_points
+    from neuralmls.shape import read
+
+    as_count("seed", seed, 0, 2**64 - 1)
+    as_count("count", count, 1, 1000)
+    source = read(shape)
+    check_size(source)
+    placed = ControlPoints(farthest_points(source.positions, source.faces, count, seed=seed))
+    placed.write(output)
+    if quiet:
+        return
+    console.line(f"{output}: {count} control points, {placed.names[0]} to {placed.names[-1]}", sys.stdout)
+    zeros = ",0" * (placed.dimension - 1)
+    console.line(
+        f"Try: neuralmls deform {shape} --points {output} -o moved{shape.suffix} "
+        f"--move p1={longest_side(source) / 5:.2g}{zeros}",
+        sys.stdout,
+    )

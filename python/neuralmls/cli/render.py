@@ -1,0 +1,109 @@
+"""`neuralmls render`: a picture of shapes side by side."""
+
+from __future__ import annotations
+
+import difflib
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from neuralmls.cli import console, outputs
+from neuralmls.cli.stages import Stages
+from neuralmls.cli.weights import (
+    AlphaOption,
+    EpsilonOption,
+    SeedOption,
+    StepsOption,
+    TemperatureOption,
+    WeightsChoice,
+    WeightsOption,
+    WidthOption,
+)
+from neuralmls.errors import ArgumentError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from neuralmls.control_points import ControlPoints
+    from neuralmls.shape import Shape
+
+
+def render(
+    shapes: Annotated[list[Path], typer.Argument(metavar="SHAPE...", help="Shapes, drawn side by side.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="The picture to write, .png.")],
+    points: Annotated[
+        Path | None, typer.Option(help="Control points: balls, on the first shape with arrows to the targets.")
+    ] = None,
+    heat: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Colour the first shape by this control point's weight.")
+    ] = None,
+    weights: WeightsOption = "neural",
+    temperature: TemperatureOption = 1.0,
+    alpha: AlphaOption = None,
+    epsilon: EpsilonOption = None,
+    width: WidthOption = None,
+    steps: StepsOption = None,
+    seed: SeedOption = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing, show no progress bar.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite files that are there.")] = False,
+) -> None:
+    """Draw shapes side by side into a picture.
+
+    All are seen by the same camera, as for before and after.     The options of the weights are those of `deform`, and matter for --heat only.
+    Needs PyVista: pip install 'neuralmls[figures]'
+    """
+    choice = WeightsChoice(weights, alpha, epsilon, width, steps, seed)
+    if heat is not None and points is None:
+        raise ArgumentError("--heat names a control point: give the control points with --points")
+    outputs.check_ending(output, ("png",), "a picture")
+    outputs.check_output(output, force=force, inputs=[*shapes, *([points] if points else [])])
+
+    from neuralmls.arrays import as_number
+    from neuralmls.control_points import ControlPoints
+    from neuralmls.figures.render import Panel
+    from neuralmls.figures.render import render as draw
+    from neuralmls.shape import read
+
+    as_number("temperature", temperature, 0)
+    stages = Stages(quiet=quiet)
+    sources = [read(path) for path in shapes]
+    control_points = None if points is None else ControlPoints.read(points)
+    if control_points is not None:
+        for sentence in control_points.check(sources[0].bounds):
+            console.warning(sentence)
+    values: list[NDArray[np.float64] | None] = [None] * len(sources)
+    if control_points is not None and heat is not None:
+        values[0] = _weights_of(heat, sources[0], control_points, choice, temperature, stages)
+    panels = [
+        Panel(visible, source.positions, source.faces, weights=value)
+        for visible, source, value in zip(_titles(shapes), sources, values, strict=True)
+    ]
+    draw(panels, output, control_points=control_points)
+    if not quiet:
+        console.line(f"{output}: {', '.join(_titles(shapes))}", sys.stdout)
+
+
+def _weights_of(
+    name: str, shape: Shape, points: ControlPoints, choice: WeightsChoice, temperature: float, stages: Stages
+) -> NDArray[np.float64]:
+    """The weight of one control point at each vertex."""
+    from neuralmls.cli.deformation import check_size
+    from neuralmls.weights import softmax
+
+    if name not in points.names:
+        nearest = difflib.get_close_matches(name, points.names, n=1, cutoff=0.0)[0]
+        raise ArgumentError(f"--heat: there is no control point '{name}'; the nearest name is '{nearest}'")
+    check_size(shape)
+    with stages.stage("training" if choice.kind == "neural" else "weights") as report:
+        function = choice.make(points.sources, shape.bounds, report)
+    with stages.stage("weighing") as report:
+        return softmax(function.logits(shape.positions, progress=report), temperature)[:, points.names.index(name)]
+
+
+def _titles(shapes: list[Path]) -> list[str]:
+    """The files' names, with their folder where two have the same name."""
+    names = [path.name for path in shapes]
+    return [path.name if names.count(path.name) == 1 else str(path) for path in shapes]

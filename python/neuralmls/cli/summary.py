@@ -1,0 +1,100 @@
+"""The summary of a deformation: for machines a document, for people two small tables."""
+
+from __future__ import annotations
+
+from typing import Any, TextIO
+
+import numpy as np
+
+from neuralmls.cli import console
+from neuralmls.cli.deformation import Deformation, longest_side
+from neuralmls.cli.weights import WeightsChoice
+from neuralmls.control_points import ControlPoints
+from neuralmls.deformer import Transform
+from neuralmls.shape import Shape
+from neuralmls.weights import NeuralWeights
+
+MOST = 20  # control points in a summary, unless all are asked for
+
+
+def summary(
+    shape: Shape,
+    points: ControlPoints,
+    choice: WeightsChoice,
+    transform: Transform,
+    temperature: float,
+    result: Deformation,
+) -> dict[str, Any]:
+    """What was done, lengths in file units. The caller adds the output and the seconds."""
+    weights: dict[str, Any] = {"kind": choice.kind}
+    function = result.weights
+    if isinstance(function, NeuralWeights):
+        weights |= {"loss": function.loss, "steps": function.steps, "seed": choice.seed or 0}
+    else:
+        weights |= {"alpha": function.alpha, "epsilon": function.epsilon}
+    moved = np.linalg.norm(points.targets - points.sources, axis=1)
+    return {
+        "input": str(shape.path),
+        "format": shape.format,
+        "vertices": len(shape.positions),
+        "triangles": 0 if shape.faces is None else len(shape.faces),
+        "longest_side": longest_side(shape),
+        "weights": weights,
+        "transform": transform,
+        "temperature": temperature,
+        "control_points": [
+            {"name": name, "moved": float(m), "distance_to_target": float(d)}
+            for name, m, d in zip(points.names, moved, result.missed, strict=True)
+        ],
+    }
+
+
+def show(told: dict[str, Any], *, everything: bool, file: TextIO) -> None:
+    """Print a summary for a person."""
+    points, weights, side = told["control_points"], told["weights"], told["longest_side"]
+    vertices = f"{told['vertices']:,}"
+    if told["triangles"]:
+        vertices += f", in {told['triangles']:,} triangles"
+    count = sum(point["moved"] > 0 for point in points)
+    console.line(f"{told['input']} -> {', '.join(told['files'] or [told['output']])}", file)
+    console.pairs(
+        [
+            ("vertices", vertices),
+            ("control points", f"{len(points):,}, {count:,} of them moved"),
+            ("weights", _weights(weights)),
+            ("transform", f"{told['transform']}, temperature {told['temperature']:g}"),
+            ("seconds", _seconds(told["seconds"])),
+        ],
+        file,
+    )
+    shown = points
+    if not everything and len(points) > MOST:
+        shown = sorted(points, key=lambda point: -point["distance_to_target"])[:MOST]
+    rows = [
+        (
+            point["name"],
+            _length(point["moved"], side),
+            _length(point["distance_to_target"], side),
+            f"{100 * point['distance_to_target'] / side:.2f} %",
+        )
+        for point in shown
+    ]
+    print(file=file)
+    console.table(["control point", "moved by", "off its target by", "of the size"], rows, (1, 2, 3), file)
+    if len(shown) < len(points):
+        console.line(f"  the {MOST} farthest from their targets; --verbose shows all {len(points):,}", file)
+
+
+def _weights(weights: dict[str, Any]) -> str:
+    if weights["kind"] == "neural":
+        return f"neural, loss {weights['loss']:.3g} after {weights['steps']:,} steps, seed {weights['seed']}"
+    return f"inverse-distance, alpha {weights['alpha']:g}, epsilon {weights['epsilon']:g}"
+
+
+def _seconds(seconds: dict[str, float]) -> str:
+    return f"{sum(seconds.values()):.2f}: " + ", ".join(f"{name} {value:.2f}" for name, value in seconds.items())
+
+
+def _length(value: float, side: float) -> str:
+    """A length in file units; what is rounding only is 0."""
+    return "0" if value < 1e-7 * side else f"{value:.4g}"

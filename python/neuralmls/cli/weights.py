@@ -1,0 +1,84 @@
+"""The options that choose a weight function, shared by the commands that need one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
+
+import typer
+
+from neuralmls.errors import ArgumentError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from neuralmls.weights import InverseDistanceWeights, NeuralWeights
+
+Kind: TypeAlias = Literal["neural", "inverse-distance"]
+
+WeightsOption = Annotated[Kind, typer.Option("--weights", help="Learned from the control points, or the classic ones.")]
+TemperatureOption = Annotated[
+    float, typer.Option(help="Of the softmax: below 1 parts move more apart, above 1 more together.")
+]
+AlphaOption = Annotated[
+    float | None,
+    typer.Option(help="Inverse-distance: exponent of the squared distance; 1 if not given."),
+]
+EpsilonOption = Annotated[
+    float | None,
+    typer.Option(help="Inverse-distance: above 0 caps the weight near a control point."),
+]
+WidthOption = Annotated[int | None, typer.Option(help="Neural: neurons of a hidden layer; 1024 if not given.")]
+StepsOption = Annotated[
+    int | None,
+    typer.Option(help="Neural: steps of the training; until the loss is small if not given."),
+]
+SeedOption = Annotated[int | None, typer.Option(help="Neural: seed of the training; 0 if not given.")]
+
+
+@dataclass(frozen=True)
+class WeightsChoice:
+    """A kind of weights and its parameters, None where the person left them open.
+
+    Raises
+    ------
+    ArgumentError
+        A parameter belongs to the other kind.
+    """
+
+    kind: Kind
+    alpha: float | None = None
+    epsilon: float | None = None
+    width: int | None = None
+    steps: int | None = None
+    seed: int | None = None
+
+    def __post_init__(self) -> None:
+        other, names = (
+            ("inverse-distance", ("alpha", "epsilon"))
+            if self.kind == "neural"
+            else ("neural", ("width", "steps", "seed"))
+        )
+        for name in names:
+            if getattr(self, name) is not None:
+                raise ArgumentError(f"--{name} belongs to --weights {other}, but the weights are {self.kind}")
+
+    def make(
+        self, sources: NDArray[np.float64], bounds: NDArray[np.float64], progress: Callable[[float], None]
+    ) -> NeuralWeights | InverseDistanceWeights:
+        """Train the network, or set up the classic weights.
+
+        Raises
+        ------
+        ArgumentError
+            A parameter is out of its range.
+        """
+        from neuralmls.weights import InverseDistanceWeights, NeuralWeights
+
+        given = {name: getattr(self, name) for name in ("alpha", "epsilon", "width", "steps", "seed")}
+        options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+        if self.kind == "neural":
+            return NeuralWeights.fit(sources, bounds=bounds, progress=progress, **options)
+        return InverseDistanceWeights(sources, bounds=bounds, **options)
