@@ -179,6 +179,17 @@ fn normals_turn_with_the_surface_and_other_fields_stay() {
 }
 
 #[test]
+fn incomplete_normals_are_carried_over() {
+    let shape = ply(
+        b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n\
+        property float nx\nproperty float ny\nend_header\n0 0 0 1 0\n",
+    );
+    assert!(!shape.has_normals());
+    assert_eq!(fact(&shape, "vertex properties"), "nx, ny (carried over)");
+    assert!(with(&shape, 0, 2.0).ends_with(b"\n2 0 0 1 0\n"));
+}
+
+#[test]
 fn whole_number_positions_are_rounded_and_refused_beyond_their_range() {
     let head = "element vertex 2\nproperty uchar x\nproperty char y\nproperty short z\nend_header\n";
     let binary =

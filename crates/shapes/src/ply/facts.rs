@@ -36,7 +36,11 @@ pub(super) fn of(header: &Header, vertices: &Vertices, faces: &Faces, body: &Bod
             "3D Gaussian splats, moved as points: shape, rotation and colour stay as they are".into(),
         );
     }
-    let others = names_of(&vertices.element, |index| vertices.slots[index].is_none());
+    let others = names_of(&vertices.element, |index| match vertices.slots[index] {
+        // Incomplete normals do not turn.
+        Some(slot) => slot >= 3 && !vertices.normals,
+        None => true,
+    });
     if !others.is_empty() {
         say("vertex properties", format!("{others} (carried over)"));
     }
