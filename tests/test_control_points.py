@@ -8,7 +8,6 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 import pytest
-
 from neuralmls.control_points import ControlPoints
 from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
 
@@ -32,7 +31,8 @@ def refusal(path: Path) -> str:
     with pytest.raises(NeuralMLSError) as caught:
         ControlPoints.read(path)
     message = str(caught.value)
-    assert message.startswith(f"{path}: ") and "\n" not in message
+    assert message.startswith(f"{path}: ")
+    assert "\n" not in message
     return message
 
 
@@ -230,7 +230,7 @@ def test_writing_leaves_nothing_half_done(tmp_path: Path) -> None:
     points = ControlPoints([[0.0, 0.0]])
     with pytest.raises(FileError, match="there is no folder"):
         points.write(tmp_path / "none" / "points.json")
-    with pytest.raises(FileError, match="ends in .json or .csv"):
+    with pytest.raises(FileError, match=r"ends in \.json or \.csv"):
         points.write(tmp_path / "points.yaml")
     (tmp_path / "folder.csv").mkdir()
     with pytest.raises(FileError, match="this is a folder"):
@@ -240,7 +240,8 @@ def test_writing_leaves_nothing_half_done(tmp_path: Path) -> None:
     link = tmp_path / "link.json"
     link.symlink_to(old)
     points.write(link)
-    assert link.is_symlink() and len(ControlPoints.read(old)) == 1
+    assert link.is_symlink()
+    assert len(ControlPoints.read(old)) == 1
     assert old.stat().st_mode & 0o777 == 0o640
     assert sorted(path.name for path in tmp_path.iterdir()) == ["folder.csv", "link.json", "points.json"]
 
@@ -298,7 +299,9 @@ def test_control_points_far_outside_are_named() -> None:
     assert near.check(box) == []
     far = ControlPoints([[500, 1000, 500], [0, 1, 0]], [[500, 1000, 500], [0, 4000, 0]], ["seat", "back"])
     position, target = far.check(box)
-    assert "position of 'seat' lies" in position and "longest side is 2:" in position
-    assert "target of 'seat' and 'back' lies" in target and "3998 units" in target
+    assert "position of 'seat' lies" in position
+    assert "longest side is 2:" in position
+    assert "target of 'seat' and 'back' lies" in target
+    assert "3998 units" in target
     with pytest.raises(ControlPointError, match="3 coordinates each, but the shape has 2"):
         far.check([[0, 0], [1, 1]])

@@ -123,9 +123,7 @@ class ControlPoints:
                 raise ArgumentError(f"there is no control point '{name}'; the nearest name is '{near[0]}'")
             step = np.asarray(offset, dtype=np.float64)
             if step.shape != (self.dimension,) or not np.isfinite(step).all():
-                raise ArgumentError(
-                    f"'{name}' needs {self.dimension} finite numbers to move by, found {offset!r}"
-                )
+                raise ArgumentError(f"'{name}' needs {self.dimension} finite numbers to move by, found {offset!r}")
             targets[self.names.index(name)] += step
         return ControlPoints(self.sources, targets, self.names)
 

@@ -1,7 +1,7 @@
 """Farthest-point placement: control points spread over a shape, so that nobody starts from an empty file.
 
 After Gonzalez, "Clustering to minimize the maximum intercluster distance", 1985: each next point is the one
-farthest from those already there. What differs: the first is the point farthest from the centroid, not any, and
+farthest from those already there. What differs: the first is the point farthest from the centroid, not any;
 the candidates are vertices and samples of the surface by area, so that plain parts get their share too.
 """
 
@@ -18,9 +18,7 @@ LEAST = 20_000
 EACH = 50
 
 
-def farthest_points(
-    positions: ArrayLike, faces: ArrayLike | None, count: int, *, seed: int = 0
-) -> NDArray[np.float64]:
+def farthest_points(positions: ArrayLike, faces: ArrayLike | None, count: int, *, seed: int = 0) -> NDArray[np.float64]:
     """Return `count` points spread evenly over a shape, the first the one farthest from the centroid.
 
     Parameters
@@ -63,20 +61,17 @@ def farthest_points(
     if len(chosen) < count and len(few) < len(cloud):  # the subsample had too few distinct places
         chosen = _farthest(np.unique(cloud, axis=0), count)
     if len(chosen) < count:
-        raise ArgumentError(
-            f"expected a count of at most {len(chosen)}, the number of distinct places of the shape, found {count}"
-        )
+        most = f"{len(chosen)}, the number of distinct places of the shape"
+        raise ArgumentError(f"expected a count of at most {most}, found {count}")
     return chosen
 
 
 def _sample_faces(
     x: NDArray[np.float64], faces: NDArray[np.int64], size: int, rng: np.random.Generator
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The vertices of the faces that have area, and `size` samples of these by area; (x, none) without area."""
+    """The vertices of the faces that have area, and `size` samples of them; (x, none) without area."""
     if faces.min() < 0 or faces.max() >= len(x):
-        raise ArgumentError(
-            f"expected faces to name vertices 0 to {len(x) - 1}, found {faces.min()} to {faces.max()}"
-        )
+        raise ArgumentError(f"expected faces to name vertices 0 to {len(x) - 1}, found {faces.min()} to {faces.max()}")
     corner, u, v = x[faces[:, 0]], x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]]
     scale = max(float(np.abs(u).max()), float(np.abs(v).max())) or 1.0  # squares neither over- nor underflow
     uu, vv, uv = (np.einsum("ij,ij->i", a / scale, b / scale) for a, b in ((u, u), (v, v), (u, v)))

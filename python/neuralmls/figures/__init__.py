@@ -1,0 +1,1 @@
+"""Figures of shapes: needs the extra `figures` (PyVista)."""

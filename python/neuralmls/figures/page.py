@@ -1,0 +1,66 @@
+"""The page of a figure: panels side by side, titles above, a legend below."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from neuralmls.figures.palette import INK, SOURCE, TARGET, Colour, heat
+
+Picture = NDArray[np.uint8]
+
+
+def png(pictures: Sequence[Picture], titles: Sequence[str], width: int, *, marks: bool, weights: bool) -> bytes:
+    """The bytes of a PNG file `width` pixels wide.
+
+    Parameters
+    ----------
+    pictures : panels of the same size, (height, width, 3), larger than they are to be shown
+    titles : one for each panel
+    marks : whether the legend explains the balls of control points
+    weights : whether the legend explains the heat map
+    """
+    from PIL import Image, ImageDraw
+
+    panel_width = width // len(pictures)
+    panel_height = round(panel_width * pictures[0].shape[0] / pictures[0].shape[1])
+    text = max(round(min(width / 64, panel_width / 14)), 9)
+    band = round(2.2 * text)
+    page = Image.new("RGB", (width, panel_height + 2 * band), "white")
+    pen = ImageDraw.Draw(page)
+    for i, (picture, title) in enumerate(zip(pictures, titles, strict=True)):
+        small = Image.fromarray(picture).resize((panel_width, panel_height), Image.Resampling.LANCZOS)
+        page.paste(small, (i * panel_width, band))
+        pen.text(((i + 0.5) * panel_width, band / 2 + 2), title, fill=_rgb(INK), font=_font(text), anchor="mm")
+    x, y = float(width - text), panel_height + 1.5 * band
+    font = _font(round(0.75 * text))
+    for wanted, colour, label in ((marks, TARGET, "target"), (marks, SOURCE, "control point")):
+        if wanted:
+            pen.text((x, y), label, fill=_rgb(INK), font=font, anchor="rm")
+            x -= pen.textlength(label, font=font) + 0.7 * text
+            r = 0.3 * text
+            pen.ellipse((x - r, y - r, x + r, y + r), fill=_rgb(colour))
+            x -= 1.2 * text
+    if weights:
+        pen.text((text, y), "weight  0", fill=_rgb(INK), font=font, anchor="lm")
+        left = round(1.4 * text + pen.textlength("weight  0", font=font))
+        bar = np.repeat(heat(np.linspace(0, 1, 9 * text))[None], round(0.6 * text), axis=0)
+        page.paste(Image.fromarray((bar * 255).round().astype(np.uint8)), (left, round(y - 0.3 * text)))
+        pen.text((left + 9.4 * text, y), "1", fill=_rgb(INK), font=font, anchor="lm")
+    out = io.BytesIO()
+    page.save(out, "PNG")
+    return out.getvalue()
+
+
+def _font(size: int):  # type: ignore[no-untyped-def]
+    from PIL import ImageFont
+
+    return ImageFont.load_default(size)
+
+
+def _rgb(colour: Colour) -> tuple[int, int, int]:
+    red, green, blue = (round(255 * value) for value in colour)
+    return red, green, blue
