@@ -113,7 +113,9 @@ fn vector(at: &At<'_>, index: usize, accessor: &Accessor, width: usize) -> Resul
 
 /// What the nodes show: instances and blocks. `room` limits what instancing makes of a small file.
 pub(super) fn place(model: &mut Model, room: usize) -> Result<(), Error> {
-    let mut known: HashMap<(usize, usize, &[(usize, usize)]), usize> = HashMap::new();
+    // Node, accessor, influences -> block.
+    type Key<'a> = (usize, usize, &'a [(usize, usize)]);
+    let mut known: HashMap<Key<'_>, usize> = HashMap::new();
     let (mut total, mut visits) = (0usize, 0usize);
     for (node, mesh) in
         model.nodes.iter().enumerate().filter(|(_, n)| n.shown).filter_map(|(i, n)| Some((i, n.mesh?)))

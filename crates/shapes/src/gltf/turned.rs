@@ -83,7 +83,7 @@ impl Model {
                     accessor.component.store(accessor.stored(*c), bytes);
                 }
             }
-            return Ok(self.changed(block.accessor, packed)?);
+            return self.changed(block.accessor, packed);
         }
         let bytes = now.iter().flatten().flat_map(|c| (*c as f32).to_le_bytes()).collect();
         Ok(Some(Content { component: Component::F32, bytes }))
