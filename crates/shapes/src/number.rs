@@ -31,7 +31,7 @@ pub(crate) enum Style {
 
 impl Style {
     /// As many decimals as the most precise token of the file had, and enough for a ten-millionth of the longest side of the
-    /// positions' box.
+    /// positions' box (of the largest coordinate, where they are all in one place).
     pub(crate) fn new(decimals_in_file: usize, positions: &[f64], dim: usize) -> Style {
         let mut longest = 0f64;
         let mut largest = 0f64;
@@ -42,7 +42,8 @@ impl Style {
             longest = longest.max(max - min);
             largest = largest.max(max.abs()).max(min.abs());
         }
-        let for_size = if longest > 0.0 { (7.0 - longest.log10()).ceil() } else { 0.0 };
+        let size = [longest, largest].into_iter().find(|&size| size > 0.0).unwrap_or(1.0);
+        let for_size = (7.0 - size.log10()).ceil();
         let decimals = (decimals_in_file as f64).max(for_size);
         let digits_before = if largest > 1.0 { largest.log10().floor() + 1.0 } else { 1.0 };
         if decimals + digits_before > 17.0 {
@@ -174,6 +175,8 @@ mod tests {
         assert_eq!(Style::new(9, &[0.0, 1.0], 1), Style::Fixed(9));
         assert_eq!(Style::new(3, &[500_000.0, 500_100.0], 1), Style::Fixed(5));
         assert_eq!(Style::new(0, &[0.0, 1e-30], 1), Style::Shortest);
+        assert_eq!(Style::new(0, &[0.5, 0.5], 1), Style::Fixed(8));
+        assert_eq!(Style::new(2, &[0.0, 0.0], 2), Style::Fixed(7));
     }
 
     #[test]

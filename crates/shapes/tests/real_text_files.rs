@@ -1,0 +1,95 @@
+//! Every OBJ, OFF, XYZ, TXT and CSV file of the data folder: unmoved identical, bent with nothing else changed, or refused.
+
+mod files;
+
+use files::{bent, data_files};
+use neuralmls_shapes::{Format, Shape};
+
+/// Whether a line may change when positions and normals do.
+fn is_moving(format: Format, line: &str) -> bool {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    match format {
+        Format::Obj => matches!(words.first(), Some(&"v" | &"vn")),
+        // A vertex has no fewer than three numbers, and one of them almost always has a point or an exponent.
+        _ => words.len() >= 3,
+    }
+}
+
+/// The corner without its normal, which may be renumbered.
+fn without_normal(word: &str) -> &str {
+    word.match_indices('/').nth(1).map_or(word, |(at, _)| &word[..at])
+}
+
+fn check_only_moving_lines_changed(format: Format, name: &str, before: &[u8], after: &[u8]) {
+    let (before, after) = (String::from_utf8_lossy(before), String::from_utf8_lossy(after));
+    let still = |text: &str| -> Vec<String> {
+        let lines = text.split('\n').filter(|line| !is_moving(format, line));
+        lines
+            .map(|line| match line.split_whitespace().next() {
+                Some("f") => line.split(' ').map(without_normal).collect::<Vec<_>>().join(" "),
+                _ => line.to_string(),
+            })
+            .collect()
+    };
+    assert!(still(&before) == still(&after), "{name}: a line without positions changed");
+    if format != Format::Obj {
+        assert_eq!(before.split('\n').count(), after.split('\n').count(), "{name}");
+    }
+    if before.lines().any(|line| line.starts_with("vn ")) {
+        return;
+    }
+    for (a, b) in before.split('\n').zip(after.split('\n')) {
+        let (a, b): (Vec<_>, Vec<_>) = (a.split_whitespace().collect(), b.split_whitespace().collect());
+        assert_eq!(a.len(), b.len(), "{name}");
+        // The keyword, and all that is behind the three coordinates.
+        let coordinates = if format == Format::Obj { 1..4 } else { 0..3 };
+        for at in (0..a.len()).filter(|at| !coordinates.contains(at)) {
+            assert_eq!(a[at], b[at], "{name}");
+        }
+    }
+}
+
+fn check(path: &std::path::Path) -> String {
+    let bytes = std::fs::read(path).unwrap();
+    let name = path.to_string_lossy();
+    let extension = path.extension().map(|e| e.to_string_lossy().into_owned());
+    let none = |_: &str| Err("no side files here".to_string());
+    let shape = match Shape::open(bytes.clone(), extension.as_deref(), &none) {
+        Ok(shape) => shape,
+        Err(error) => {
+            assert!(!error.message.is_empty() && !error.message.contains('\n'));
+            return format!("refused: {error}");
+        }
+    };
+    assert!(shape.write(shape.positions(), None).unwrap().bytes == bytes, "{name} unmoved");
+    let asked = bent(&shape);
+    let written = shape.write(&asked, None).unwrap().bytes;
+    let again = Shape::open(written.clone(), extension.as_deref(), &none)
+        .unwrap_or_else(|e| panic!("{name} bent: {e}"));
+    assert_eq!(again.faces(), shape.faces(), "{name}");
+    let size = |k: usize| {
+        let axis = || asked.iter().skip(k).step_by(shape.dim());
+        axis().fold(f64::MIN, |a, &b| a.max(b)) - axis().fold(f64::MAX, |a, &b| a.min(b))
+    };
+    let longest = (0..shape.dim()).map(size).fold(0.0, f64::max);
+    let longest = if longest > 0.0 { longest } else { 1.0 };
+    for (is, asked) in again.positions().iter().zip(&asked) {
+        assert!((is - asked).abs() <= 1e-7 * longest, "{name}: {is} {asked}");
+    }
+    check_only_moving_lines_changed(shape.format(), &name, &bytes, &written);
+    let count = shape.positions().len() / shape.dim();
+    let facts: Vec<_> = shape.facts().iter().map(|(what, value)| format!("{what}: {value}")).collect();
+    format!("{count} vertices, {} triangles | {}", shape.faces().map_or(0, <[_]>::len), facts.join(" | "))
+}
+
+#[test]
+fn real_files_are_unmoved_identical_and_bent_nothing_else_changes() {
+    for format in [Format::Obj, Format::Off, Format::Table] {
+        for extension in format.extensions() {
+            for path in data_files(extension) {
+                let shown: Vec<_> = path.iter().rev().take(2).map(|part| part.to_string_lossy()).collect();
+                println!("{:60} {}", format!("{}/{}", shown[1], shown[0]), check(&path));
+            }
+        }
+    }
+}
