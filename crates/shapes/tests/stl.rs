@@ -162,7 +162,7 @@ fn a_position_beyond_float32_is_refused() {
 fn real_files_keep_everything() {
     let refused = check_data_files(Format::Stl, 2e-7, |shape, before, after| {
         if fact(shape, "encoding") == "ascii" {
-            // All but the normals, which were computed anew.
+            // All but the normals, which turned there and back.
             let numbers =
                 |line: &str| if line.contains("normal") { String::new() } else { format!("{line}\n") };
             let words =

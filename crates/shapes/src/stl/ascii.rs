@@ -119,7 +119,7 @@ pub(super) fn read(source: &[u8]) -> Result<Parsed, Error> {
     let mut names = Names::default();
     solids.into_iter().for_each(|name| names.add(name));
     names.tell("solids", &mut facts);
-    facts.push(("normals".into(), "those of moved triangles computed anew".into()));
+    facts.push(("normals".into(), "turned with their triangles".into()));
     Ok(Parsed {
         dim: 3,
         faces: Some(faces(positions.len() / 3)),

@@ -68,7 +68,7 @@ pub(super) fn read(source: &[u8]) -> Result<Parsed, Error> {
         say("header", header.trim().to_string());
     }
     if without_normal < count {
-        say("normals", "those of moved triangles computed anew".into());
+        say("normals", "turned with their triangles".into());
     }
     if without_normal > 0 {
         say("triangles without a normal", format!("{without_normal} (they keep 0 0 0)"));
