@@ -63,7 +63,8 @@ def table(
     for row in content:
         grid.add_row(*map(Text, row))
     out = sys.stdout if file is None else file
-    screen = Console(file=out, highlight=False, width=None if out.isatty() else 200)
+    screen = Console(file=out, highlight=False)
+    screen.width = screen.width - 2 if out.isatty() else 200  # 2: the indent
     with screen.capture() as capture:
         screen.print(grid)
     for text in capture.get().splitlines():  # indented, and without the blanks that fill a table's last column

@@ -30,9 +30,7 @@ TransformName: TypeAlias = Literal["rigid", "similarity", "affine"]
 
 
 def deform(
-    shape: Annotated[
-        Path, typer.Argument(metavar="SHAPE", help="The shape: OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV or NPY.")
-    ],
+    shape: Annotated[Path, typer.Argument(metavar="SHAPE", help="OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV or NPY.")],
     points: Annotated[Path, typer.Option(help="The control points and their targets, JSON or CSV.")],
     output: Annotated[
         Path, typer.Option("--output", "-o", help="The file to write, of the shape's format; - for standard output.")
@@ -56,7 +54,8 @@ def deform(
 ) -> None:
     """Bend a shape by its control points.
 
-    Writes the same file with new positions. Everything else in the file is carried over; unmoved control points give the very same bytes.
+    Writes the same file with new positions. Everything else in the file is carried over;
+    unmoved control points give the very same bytes.
 
     Example: neuralmls deform chair.obj --points chair.json -o bent.obj
     """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from shlex import quote
 from typing import Annotated
 
 import typer
@@ -59,10 +60,12 @@ def demo(
     if missing is not None:
         console.warning(f"there is no picture: {missing}")
     print("\nTry next:")
-    taller = output / "taller.obj"
-    console.line(f"  neuralmls deform {chair} --points {points} -o {taller} \\", sys.stdout)
+    mine = output / "mine.obj"
+    console.line(
+        f"  neuralmls deform {quote(str(chair))} --points {quote(str(points))} -o {quote(str(mine))} \\", sys.stdout
+    )
     console.line(f"    --move {control_points.names[0]}=0,-0.2,0", sys.stdout)
-    console.line(f"  neuralmls inspect {chair}", sys.stdout)
+    console.line(f"  neuralmls inspect {quote(str(chair))}", sys.stdout)
     print("  neuralmls points YOUR_SHAPE -o points.json")
 
 

@@ -12,9 +12,7 @@ from neuralmls.cli import console
 
 
 def inspect(
-    shape: Annotated[
-        Path, typer.Argument(metavar="SHAPE", help="The shape: OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV or NPY.")
-    ],
+    shape: Annotated[Path, typer.Argument(metavar="SHAPE", help="OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV or NPY.")],
     json: Annotated[bool, typer.Option("--json", help="As JSON, for machines.")] = False,
 ) -> None:
     """Show what is in a file, and what a deformation will carry over."""
@@ -39,13 +37,13 @@ def inspect(
         console.document(told)
         return
     console.line(f"{shape}: {source.format}, {told['bytes']:,} bytes", sys.stdout)
-    rows = [("vertices", f"{told['vertices']:,}")]
-    if told["triangles"]:
-        rows.append(("triangles", f"{told['triangles']:,}"))
+    rows = [("vertices", f"{told['vertices']}")]
+    if told["triangles"] and "faces" not in told["holds"]:
+        rows.append(("faces", f"{told['triangles']} triangles"))
     rows += [("box", f"{_place(low)} to {_place(high)}"), ("size", " x ".join(f"{length:.6g}" for length in size))]
     console.pairs([*rows, *source.facts], sys.stdout)
-    turned = "normals and tangents turn with the surface, " if source.has_normals else ""
-    console.line(f"A deformation moves the positions; {turned}everything else is carried over as it is.", sys.stdout)
+    turned = "; its normals and tangents turn with the surface" if source.has_normals else ""
+    print(f"A deformation moves the positions{turned}.\nEverything else is carried over as it is.")
 
 
 def _place(point: list[float]) -> str:

@@ -54,10 +54,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         with suppress(AttributeError, ValueError):  # a terminal that cannot show a name still shows the rest
             stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
+    command = get_command(app)
     try:
-        code = get_command(app)(given, prog_name="neuralmls", standalone_mode=False)
+        with command.make_context("neuralmls", given) as context:
+            command.invoke(context)
         sys.stdout.flush()
-        return code if isinstance(code, int) else 0
+        return 0
+    except typer.Exit as done:
+        return done.exit_code
     except ArgumentError as error:
         console.error(str(error))
         return WRONG_USE
@@ -67,15 +71,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except typer.TyperException as error:
         console.error(_usage(error))
         return WRONG_USE
-    except (KeyboardInterrupt, typer.Abort):
-        console.line("neuralmls: interrupted; nothing was written")
+    except KeyboardInterrupt:
+        console.line("neuralmls: interrupted")
         return INTERRUPTED
-    except BrokenPipeError:
-        with suppress(OSError):
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python complains at its end
-        return BAD_DATA
     except MemoryError:
         console.error("there is not enough memory for this")
+        return BAD_DATA
+    except OSError as error:  # files are refused where they are read and written: this is standard output
+        if not isinstance(error, BrokenPipeError):  # which is how `| head` ends a command
+            console.error(f"standard output: cannot write: {error.strerror or error}")
+        with suppress(OSError, ValueError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python complains at its end
         return BAD_DATA
 
 

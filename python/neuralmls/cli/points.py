@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from shlex import quote
 from typing import Annotated
 
 import typer
@@ -21,7 +22,8 @@ def points(
 ) -> None:
     """Spread control points over a shape, to start from.
 
-    Each is as far from the others as can be. Rename them and set their targets in the file, or move them with: neuralmls deform --move
+    Each is as far from the others as can be. Rename them and set their targets in the file,
+    or move them with: neuralmls deform --move
     """
     outputs.check_ending(output, ("json", "csv"), "a file of control points")
     outputs.check_output(output, force=force, inputs=[shape])
@@ -43,7 +45,7 @@ def points(
     console.line(f"{output}: {count} control points, {placed.names[0]} to {placed.names[-1]}", sys.stdout)
     zeros = ",0" * (placed.dimension - 1)
     console.line(
-        f"Try: neuralmls deform {shape} --points {output} -o moved{shape.suffix} "
+        f"Try: neuralmls deform {quote(str(shape))} --points {quote(str(output))} -o moved{shape.suffix} "
         f"--move p1={longest_side(source) / 5:.2g}{zeros}",
         sys.stdout,
     )

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 def render(
-    shapes: Annotated[list[Path], typer.Argument(metavar="SHAPE...", help="Shapes, drawn side by side.")],
+    shapes: Annotated[list[Path], typer.Argument(metavar="SHAPE", help="Shapes, drawn side by side.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="The picture to write, .png.")],
     points: Annotated[
         Path | None, typer.Option(help="Control points: balls, on the first shape with arrows to the targets.")
@@ -52,8 +52,8 @@ def render(
 ) -> None:
     """Draw shapes side by side into a picture.
 
-    All are seen by the same camera, as for before and after.     The options of the weights are those of `deform`, and matter for --heat only.
-    Needs PyVista: pip install 'neuralmls[figures]'
+    All are seen by the same camera. The options of the weights are those of deform, and matter
+    for --heat only. Needs PyVista: pip install 'neuralmls[figures]'
     """
     choice = WeightsChoice(weights, alpha, epsilon, width, steps, seed)
     if heat is not None and points is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from shlex import quote
 from typing import Annotated
 
 import typer
@@ -26,7 +27,8 @@ def sample(
     if not quiet:
         console.line(f"{files[0]}: the {name}, with {files[1].name} and its control points {files[2].name}", sys.stdout)
         console.line(
-            f"Try: neuralmls deform {files[0]} --points {files[2]} -o {output.with_stem(output.stem + '-moved')}",
+            f"Try: neuralmls deform {quote(str(files[0]))} --points {quote(str(files[2]))} "
+            f"-o {quote(str(output.with_stem(output.stem + '-moved')))}",
             sys.stdout,
         )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import floor, log10
 from typing import Any, TextIO
 
 import numpy as np
@@ -96,5 +97,9 @@ def _seconds(seconds: dict[str, float]) -> str:
 
 
 def _length(value: float, side: float) -> str:
-    """A length in file units; what is rounding only is 0."""
-    return "0" if value < 1e-7 * side else f"{value:.4g}"
+    """A length in file units, to about a hundred-thousandth of the shape; what is rounding only is 0."""
+    if value < 1e-7 * side:
+        return "0"
+    digits = max(4 - floor(log10(side)), 0)
+    text = f"{value:.{digits}f}"
+    return text if float(text) > 0 else f"< {10.0**-digits:.{digits}f}"
