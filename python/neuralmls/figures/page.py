@@ -42,7 +42,10 @@ def png(pictures: Sequence[Picture], titles: Sequence[str], width: int, *, marks
             pen.text((x, y), label, fill=_rgb(INK), font=font, anchor="rm")
             x -= pen.textlength(label, font=font) + 0.7 * text
             r = 0.3 * text
-            pen.ellipse((x - r, y - r, x + r, y + r), fill=_rgb(colour))
+            dot = Image.new("L", (64, 64))
+            ImageDraw.Draw(dot).ellipse((0, 0, 63, 63), fill=255)
+            dot = dot.resize((round(2 * r), round(2 * r)), Image.Resampling.LANCZOS)
+            page.paste(_rgb(colour), (round(x - r), round(y - r)), dot)
             x -= 1.2 * text
     if weights:
         pen.text((text, y), "weight  0", fill=_rgb(INK), font=font, anchor="lm")

@@ -13,7 +13,7 @@ SEAT = 0.44  # height of the seat board's middle
 WIDTH, DEPTH = 0.46, 0.44
 LEG_X, FRONT, BACK = 0.19, 0.18, -0.19
 TOP = 0.98
-LEAN = -20.0  # degrees that the back is leaned by
+LEAN = -16.0  # degrees that the back is leaned by
 
 
 def make() -> Sample:
@@ -63,7 +63,7 @@ def make() -> Sample:
         parts.append(sweep(f"{side}-armrest", "wood", rest, rounded(0.05, 0.024, 0.011, sides=2)))
         stay = line((x * 1.08, SEAT, 0.13), (x * 1.17, 0.68, 0.14), 18)
         parts.append(sweep(f"{side}-armrest-stay", "wood", stay, circle(0.013, 12)))
-        rail = line((x * 1.04, 0.2, BACK * 1.1), (x * 1.04, 0.2, FRONT * 1.06), 22)
+        rail = line((x * 1.07, 0.12, BACK * 1.14), (x * 1.07, 0.12, FRONT * 1.09), 22)
         parts.append(sweep(f"{side}-stretcher", "wood", rail, circle(0.011, 10)))
     for k, height in enumerate((0.60, 0.70, 0.80)):
         parts.append(_slat(f"slat-{k + 1}", height, 0.032, 0.014))
@@ -130,6 +130,7 @@ def _control_points() -> ControlPoints:
         rest[f"seat-back-{side}"] = np.array([x, SEAT, BACK])
         rest[f"back-top-{side}"] = np.array([x, TOP, _back_z(TOP)])
         rest[f"armrest-{side}"] = np.array([x * 1.17, 0.68, 0.14])
+        moved[f"armrest-{side}"] = rest[f"armrest-{side}"] - [0.0, 0.0, 0.035]
         top = rest[f"back-top-{side}"]
         moved[f"back-top-{side}"] = hinge + lean @ (top - hinge)
     sources = [rest[name] for name in rest]

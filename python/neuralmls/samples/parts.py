@@ -98,7 +98,7 @@ def loft(name: str, material: str, sections: Array, *, caps: tuple[bool, bool] =
 
 def _cap(name: str, material: str, outline: Array, rings: int) -> Part:
     centre, count = outline.mean(axis=0), len(outline)
-    scales = np.linspace(1.0, 0.25, rings + 1)[:, None, None] if rings else np.ones((1, 1, 1))
+    scales = np.linspace(1.0, 0.05, rings + 1)[:, None, None] if rings else np.ones((1, 1, 1))
     grid = centre + (outline - centre) * scales
     span = np.ptp(outline, axis=0)
     axes = np.sort(np.argsort(span)[1:])  # lay the texture over the two directions that the end extends in

@@ -1,4 +1,4 @@
-"""The sample table: tapered legs, a drawer, a shelf; its moved control points make it a long, low one."""
+"""The sample table: tapered legs, a drawer, a shelf; its moved control points make it longer and higher."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def make() -> Sample:
         slab(
             "shelf",
             "oak",
-            (0, 0.2, 0),
+            (0, 0.11, 0),
             (2 * LEG_X, 0.02, 2 * LEG_Z - 0.06),
             radius=0.02,
             bevel=0.004,
@@ -81,11 +81,11 @@ def _control_points() -> ControlPoints:
     names, sources, targets = [], [], []
     for end, z in (("front", LEG_Z), ("back", -LEG_Z)):
         for side, x in (("left", LEG_X), ("right", -LEG_X)):
-            outward = 0.35 * np.sign(x)
+            outward = 0.22 * np.sign(x)
             names += [f"{end}-{side}-foot", f"top-{end}-{side}"]
             sources += [(x * 1.06, 0.0, z * 1.12), (x, HEIGHT - 0.018, z)]
-            targets += [(x * 1.06 + outward, 0.26, z * 1.12), (x + outward, HEIGHT - 0.018, z)]
-    names += ["top-middle", "drawer"]
-    sources += [(0.0, HEIGHT - 0.018, 0.0), (0.0, HEIGHT - 0.088, LEG_Z + 0.02)]
-    targets += sources[-2:]
+            targets += [(x * 1.06 + outward, -0.22, z * 1.12), (x + outward, HEIGHT - 0.018, z)]
+    names += ["shelf-middle", "top-middle", "drawer"]
+    sources += [(0.0, 0.11, 0.0), (0.0, HEIGHT - 0.018, 0.0), (0.0, HEIGHT - 0.088, LEG_Z + 0.02)]
+    targets += [(0.0, -0.11, 0.0), *sources[-2:]]
     return ControlPoints(np.round(sources, 4), np.round(targets, 4), names)
