@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from neuralmls import _core
 from neuralmls.arrays import Progress, as_number, as_points
 from neuralmls.errors import ArgumentError
-from neuralmls.weights.protocol import Weights
+from neuralmls.protocol import Weights
 
 Transform: TypeAlias = Literal["rigid", "similarity", "affine"]
 Floats: TypeAlias = NDArray[np.floating]
@@ -59,8 +59,9 @@ class Deformer:
         transform: Transform = "rigid",
         progress: Progress | None = None,
     ) -> None:
-        dtype = getattr(x, "dtype", None)
-        self._dtype = np.dtype(np.float32) if dtype == np.float32 else np.dtype(np.float64)
+        given = getattr(x, "dtype", np.dtype(np.float64))
+        single = given.kind == "f" and given.itemsize == 4  # whatever its byte order
+        self._dtype = np.dtype(np.float32 if single else np.float64)
         p = as_points("control_points", weights.control_points)
         points = as_points("x", x, p.shape[1])
         logits = np.ascontiguousarray(weights.logits(points, progress=progress), dtype=np.float32)

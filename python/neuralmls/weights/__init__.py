@@ -2,7 +2,7 @@
 
 from neuralmls.weights.inverse_distance import InverseDistanceWeights
 from neuralmls.weights.neural import NeuralWeights
-from neuralmls.weights.protocol import Weights
+from neuralmls.protocol import Weights
 from neuralmls.weights.softmax import softmax
 
 __all__ = ["InverseDistanceWeights", "NeuralWeights", "Weights", "softmax"]

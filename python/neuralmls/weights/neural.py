@@ -156,7 +156,7 @@ class NeuralWeights:
             The file is missing or is not such a file.
         """
         try:
-            with np.load(path, allow_pickle=False) as stored:
+            with open(path, "rb") as file, np.load(file, allow_pickle=False) as stored:
                 arrays = {name: stored[name] for name in stored.files}
             if str(arrays["format"]) != FORMAT:
                 raise FileError(
@@ -196,8 +196,8 @@ def _single(array: NDArray[np.generic], dimensions: int) -> NDArray[np.float32]:
 def _box(p: NDArray[np.float64], bounds: ArrayLike | None) -> tuple[list[float], float]:
     if bounds is not None:
         return as_box(bounds, p.shape[1])
-    if len(p) == 1:
-        return p[0].tolist(), 1.0
     if len(p) == 0:
         raise ArgumentError("control_points: expected at least one, found none")
+    if (p == p[0]).all():
+        return p[0].tolist(), 1.0
     return as_box(np.stack([p.min(axis=0), p.max(axis=0)]), p.shape[1])

@@ -36,7 +36,8 @@ def softmax(logits: ArrayLike, temperature: float = 1.0) -> NDArray[np.float64]:
     t = as_number("temperature", temperature, 0)
     values = np.asarray(logits, dtype=np.float64)
     largest = values.max(axis=-1, keepdims=True)
-    below = np.where(values == largest, 0.0, values - np.where(np.isfinite(largest), largest, 0.0))
-    e = np.where(np.isinf(largest) & (values < largest), 0.0, np.exp(below / t))
+    with np.errstate(invalid="ignore"):  # infinity less infinity, which is a tie
+        below = np.where(values == largest, 0.0, values - largest)
+    e = np.exp(below / t)
     weights: NDArray[np.float64] = e / e.sum(axis=-1, keepdims=True)
     return weights

@@ -1,0 +1,54 @@
+# The two commands of the README: `make demo` and `make test`. Both set up all that they need in .venv and target.
+
+PYTHON ?= python3
+BIN := .venv/bin
+RUST := Cargo.toml Cargo.lock $(shell find crates -name '*.rs' -o -name Cargo.toml)
+FUZZ_SECONDS ?= 30
+
+.PHONY: demo test rust python fuzz wasm tools clean
+
+demo: .venv/figures.stamp
+	$(BIN)/neuralmls demo -o out
+
+test: rust wasm python fuzz
+	@echo "make test: everything passed"
+
+rust: tools
+	cargo fmt --all --check
+	cargo fmt --manifest-path fuzz/Cargo.toml --check
+	cargo clippy --workspace --all-targets --locked -- -D warnings
+	cargo test --workspace --locked
+
+# The browser editor's crates: they must compile without threads for WebAssembly.
+wasm: tools
+	@rustup target list --installed 2>/dev/null | grep -q wasm32-unknown-unknown || rustup target add wasm32-unknown-unknown
+	cargo clippy --locked -p neuralmls-core -p neuralmls-shapes --no-default-features --target wasm32-unknown-unknown -- -D warnings
+
+python: .venv/test.stamp
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/python -m pytest
+
+fuzz: tools
+	fuzz/run.sh $(FUZZ_SECONDS)
+
+.venv/bin/python: | tools
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --upgrade pip
+
+.venv/figures.stamp: .venv/bin/python pyproject.toml $(RUST)
+	$(BIN)/python -m pip install --quiet --editable '.[figures]'
+	@touch $@
+
+.venv/test.stamp: .venv/bin/python pyproject.toml $(RUST)
+	$(BIN)/python -m pip install --quiet --editable '.[figures,test]'
+	@touch $@ .venv/figures.stamp
+
+tools:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { echo "Python 3.11 or later is missing: install it from https://www.python.org, or say where it is with PYTHON=..." >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip' 2>/dev/null || { echo "Python's venv module is missing: install it, on Debian with: apt-get install python3-venv" >&2; exit 1; }
+	@command -v cargo >/dev/null || { echo "Rust is missing: install it from https://rustup.rs" >&2; exit 1; }
+
+clean:
+	rm -rf .venv target fuzz/target out

@@ -1,0 +1,29 @@
+"""Where the test data is. It never lies in the repository: its licences differ."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+BESIDE = Path(__file__).resolve().parents[2] / "shared"
+
+
+def _folder(variable: str, name: str) -> Path:
+    folder = Path(os.environ.get(variable, BESIDE / name))
+    if not folder.is_dir():
+        pytest.skip(f"no test data: neither ../shared/{name} nor ${variable} is there")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def data() -> Path:
+    """Real shapes: ../shared/data or $NEURALMLS_DATA."""
+    return _folder("NEURALMLS_DATA", "data")
+
+
+@pytest.fixture(scope="session")
+def golden() -> Path:
+    """Results of the published code: ../shared/golden or $NEURALMLS_GOLDEN."""
+    return _folder("NEURALMLS_GOLDEN", "golden")

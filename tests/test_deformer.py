@@ -1,0 +1,139 @@
+"""Deformer and the one-shot function: kinds of input, progress, refusals."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import pytest
+
+import neuralmls as nm
+
+RNG = np.random.default_rng(0)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("dimension", [1, 2, 3])
+def test_any_layout_of_memory_gives_the_same_result_and_is_not_changed(dtype, dimension):
+    x = RNG.uniform(-1, 1, (40, dimension)).astype(dtype)
+    p, q = RNG.uniform(-1, 1, (2, 5, dimension))
+    expected = nm.deform(x, p, q, weights="inverse-distance")
+    assert expected.dtype == dtype
+    strided = np.zeros((80, 2 * dimension), dtype)
+    strided[::2, ::2] = x
+    frozen = x.copy()
+    frozen.flags.writeable = False
+    for same in (np.asfortranarray(x), strided[::2, ::2], frozen, x.astype(x.dtype.newbyteorder())):
+        before = same.copy()
+        assert np.array_equal(nm.deform(same, p, q, weights="inverse-distance"), expected)
+        assert np.array_equal(same, before)
+
+
+def test_lists_and_integers_are_points_too():
+    assert nm.deform([[0, 0], [2, 0]], [[0, 0], [2, 0]], [[0, 1], [2, 1]]).tolist() == [[0.0, 1.0], [2.0, 1.0]]
+
+
+def test_any_object_with_logits_is_a_weight_function():
+    class Nearest:
+        control_points = np.array([[0.0], [1.0]])
+
+        def logits(self, x, *, progress=None):
+            return -100 * np.abs(x - self.control_points.T)
+
+    y = nm.deform([[0.1], [0.9]], [[0.0], [1.0]], [[0.0], [2.0]], weights=Nearest())
+    assert np.allclose(y, [[0.1], [1.9]])
+
+
+def test_maps_are_returned_when_asked():
+    p = RNG.uniform(-1, 1, (5, 3))
+    deformer = nm.Deformer(p, nm.InverseDistanceWeights(p), transform="rigid")
+    y, maps = deformer.deform(p[:, [1, 2, 0]], return_maps=True)
+    assert np.allclose(y, p[:, [1, 2, 0]])
+    assert np.allclose(maps, np.eye(3)[[1, 2, 0]], atol=1e-6)
+
+
+def test_a_point_and_no_points_are_deformed():
+    p = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+    q = np.add(p, 1)
+    assert np.allclose(nm.deform([[5.0, 5.0, 5.0]], p, q), 6)
+    assert nm.deform(np.empty((0, 3)), p, q).shape == (0, 3)
+
+
+@pytest.mark.parametrize("m", [2, 3, 40])
+def test_neural_handles_arrive_near_their_targets(m):
+    p = np.random.default_rng(m).uniform(-1, 1, (m, 3))
+    q = p + np.random.default_rng(m + 1).uniform(-0.2, 0.2, (m, 3))
+    weights = nm.NeuralWeights.fit(p, bounds=[[-1] * 3, [1] * 3])
+    assert weights.loss < 0.105
+    arrived = nm.Deformer(p, weights).deform(q)
+    assert np.linalg.norm(arrived - q, axis=1).max() < 0.1
+
+
+def test_progress_is_told_and_can_stop():
+    p, q = RNG.uniform(-1, 1, (2, 5, 3))
+    told: list[float] = []
+    weights = nm.NeuralWeights.fit(p, width=64, progress=told.append)
+    nm.Deformer(np.zeros((10, 3)), weights, progress=told.append).deform(q, progress=told.append)
+    assert told[0] == 0
+    assert told[-1] == 1
+    assert all(0 <= fraction <= 1 for fraction in told)
+
+    def stop(_fraction):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        nm.NeuralWeights.fit(p, width=64, progress=stop)
+
+
+def test_ctrl_c_stops_a_long_call():
+    import os
+    import signal
+
+    p = RNG.uniform(-1, 1, (200, 3))
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        nm.NeuralWeights.fit(p, steps=1_000_000)
+
+
+def test_other_threads_run_during_a_long_call():
+    p = RNG.uniform(-1, 1, (10, 3))
+    done = threading.Event()
+    ticks = 0
+
+    def count():
+        nonlocal ticks
+        while not done.wait(0.001):
+            ticks += 1
+
+    counter = threading.Thread(target=count)
+    counter.start()
+    nm.NeuralWeights.fit(p, steps=40)
+    done.set()
+    counter.join()
+    assert ticks > 3
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"x": [[0.0, 0.0]]}, "x: expected 3 coordinates a point, found 2"),
+        ({"x": [0.0, 1.0]}, "x: expected an \\(n, d\\) array"),
+        ({"x": [[np.nan, 0, 0]]}, "x: point 0 has a coordinate that is not finite"),
+        ({"x": "chair"}, "x: expected an \\(n, d\\) array of numbers"),
+        ({"p": np.empty((0, 3)), "q": np.empty((0, 3))}, "at least one control point"),
+        ({"q": [[0.0, 0.0, 0.0]]}, "found 1 for 2"),
+        ({"q": [[0.0, 0.0], [1.0, 1.0]]}, "q: expected 3 coordinates"),
+        ({"p": [[1.0, 1.0, 1.0]] * 2}, "numbers 0 and 1 are in the same place"),
+        ({"temperature": 0}, "temperature: expected a number above 0, found 0"),
+        ({"temperature": "hot"}, "temperature: expected a number above 0, found 'hot'"),
+        ({"weights": "magic"}, "weights: expected 'neural' or 'inverse-distance', found 'magic'"),
+        ({"transform": "bend"}, "transform: expected 'rigid', 'similarity' or 'affine', found 'bend'"),
+        ({"seed": -1}, "seed: expected a whole number from 0"),
+        ({"seed": 0.5}, "seed: expected a whole number, found 0.5"),
+    ],
+)
+def test_wrong_arguments_are_refused_in_a_sentence(change, sentence):
+    arguments = {"x": [[0.0, 0.0, 0.0]], "p": [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]], "q": [[0.0, 0.0, 0.0]] * 2} | change
+    x, p, q = (arguments.pop(name) for name in "xpq")
+    with pytest.raises(nm.ArgumentError, match=sentence):
+        nm.deform(x, p, q, **arguments)

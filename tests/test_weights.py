@@ -1,0 +1,90 @@
+"""Weight functions: what they say, saving and loading, refusals."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import neuralmls as nm
+
+P = np.array([[-0.8, -0.9, 0.1], [0.7, -0.8, 0.2], [-0.6, 0.9, -0.3], [0.5, 0.4, 0.9]])
+X = np.random.default_rng(0).uniform(-1, 1, (30, 3))
+
+
+@pytest.fixture(scope="module")
+def neural():
+    return nm.NeuralWeights.fit(P, width=64)
+
+
+@pytest.mark.parametrize(("alpha", "epsilon"), [(0.5, 0.0), (1.0, 0.0), (2.0, 0.1)])
+def test_classic_weights_are_the_formula(alpha, epsilon):
+    squared = ((X[:, None] - P) ** 2).sum(axis=2)
+    expected = 1 / (squared**alpha + epsilon)
+    expected /= expected.sum(axis=1, keepdims=True)
+    weights = nm.InverseDistanceWeights(P, alpha=alpha, epsilon=epsilon)
+    assert np.abs(nm.softmax(weights.logits(X)) - expected).max() < 1e-6
+
+
+def test_with_bounds_epsilon_means_the_same_at_any_size():
+    small = nm.InverseDistanceWeights(P, epsilon=0.1, bounds=[[-1] * 3, [1] * 3])
+    large = nm.InverseDistanceWeights(1000 * P, epsilon=0.1, bounds=[[-1000] * 3, [1000] * 3])
+    assert np.allclose(nm.softmax(small.logits(X)), nm.softmax(large.logits(1000 * X)), atol=1e-6)
+
+
+def test_softmax_takes_infinite_logits_and_small_temperatures():
+    w = nm.softmax([[0.0, np.inf, 3.0], [0.0, -1.0, -2.0]], 1e-3)
+    assert w.tolist() == [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
+
+
+def test_every_control_point_owns_its_place(neural):
+    assert nm.softmax(neural.logits(P)).diagonal().min() >= 0.9
+    assert neural.steps == len(neural.losses) < 2000
+    assert neural.loss < neural.losses[0]
+
+
+def test_saved_weights_are_loaded_as_they_were(neural, tmp_path):
+    neural.save(tmp_path / "chair.npz")
+    loaded = nm.NeuralWeights.load(tmp_path / "chair.npz")
+    assert np.array_equal(loaded.logits(X), neural.logits(X))
+    assert np.array_equal(loaded.control_points, P)
+    assert (loaded.loss, loaded.steps) == (neural.loss, neural.steps)
+    fourier = nm.NeuralWeights.fit(P, width=32, fourier_sigma=0.5)
+    fourier.save(tmp_path / "fourier.npz")
+    assert np.array_equal(nm.NeuralWeights.load(tmp_path / "fourier.npz").logits(X), fourier.logits(X))
+
+
+def test_other_files_are_refused_in_a_sentence(neural, tmp_path):
+    with pytest.raises(nm.FileError, match=r"none\.npz: cannot read: No such file"):
+        nm.NeuralWeights.load(tmp_path / "none.npz")
+    (tmp_path / "text.npz").write_text("v 0 0 0\n")
+    np.savez(tmp_path / "other.npz", a=np.zeros(3))
+    neural.save(tmp_path / "whole.npz")
+    whole = (tmp_path / "whole.npz").read_bytes()
+    (tmp_path / "half.npz").write_bytes(whole[: len(whole) // 2])
+    arrays = dict(np.load(tmp_path / "whole.npz"))
+    np.savez(tmp_path / "unfit.npz", **{**arrays, "bias1": np.zeros(3, np.float32)})
+    np.savez(tmp_path / "fewer.npz", **{**arrays, "control_points": P[:2]})
+    for name in ("text", "other", "half", "unfit", "fewer"):
+        with pytest.raises(nm.FileError, match=f"{name}.npz: this is no network"):
+            nm.NeuralWeights.load(tmp_path / f"{name}.npz")
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda: nm.InverseDistanceWeights(P, alpha=0), "alpha: expected a number above 0"),
+        (lambda: nm.InverseDistanceWeights(P, epsilon=-1), "epsilon: expected a number of at least 0"),
+        (lambda: nm.InverseDistanceWeights(np.empty((0, 3))), "control points: expected at least one"),
+        (lambda: nm.NeuralWeights.fit(P, width=0), "width: expected a whole number from 1 to 16384, found 0"),
+        (lambda: nm.NeuralWeights.fit(P, steps=0), "steps: expected a whole number from 1"),
+        (lambda: nm.NeuralWeights.fit(P, rate=np.inf), "rate: expected a number above 0"),
+        (lambda: nm.NeuralWeights.fit(P, fourier_sigma=0), "fourier_sigma: expected a number above 0"),
+        (lambda: nm.NeuralWeights.fit(np.empty((0, 3))), "expected at least one, found none"),
+        (lambda: nm.NeuralWeights.fit(np.arange(3003.0).reshape(-1, 3)), "found 1001"),
+        (lambda: nm.NeuralWeights.fit(P, bounds=[[0] * 3, [0] * 3]), "bounds: all points are in one place"),
+        (lambda: nm.NeuralWeights.fit(P, bounds=[[1] * 3, [0] * 3]), "bounds: expected two rows"),
+    ],
+)
+def test_wrong_arguments_are_refused_in_a_sentence(call, sentence):
+    with pytest.raises(nm.ArgumentError, match=sentence):
+        call()
