@@ -72,7 +72,8 @@ fn check(path: &std::path::Path) -> String {
         axis().fold(f64::MIN, |a, &b| a.max(b)) - axis().fold(f64::MAX, |a, &b| a.min(b))
     };
     let longest = (0..shape.dim()).map(size).fold(0.0, f64::max);
-    let longest = if longest > 0.0 { longest } else { 1.0 };
+    let largest = asked.iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
+    let longest = if longest > 0.0 { longest } else { largest };
     for (is, asked) in again.positions().iter().zip(&asked) {
         assert!((is - asked).abs() <= 1e-7 * longest, "{name}: {is} {asked}");
     }
