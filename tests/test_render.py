@@ -1,5 +1,6 @@
 """Figures: a PNG with something in it, the same camera for all panels, one sentence where it cannot be."""
 
+import io
 import sys
 from pathlib import Path
 
@@ -9,12 +10,15 @@ from numpy.typing import NDArray
 
 pytest.importorskip("pyvista", reason="the extra 'figures' is not installed")
 
+from PIL import Image
+
 from neuralmls.control_points import ControlPoints
 from neuralmls.errors import ArgumentError, FileError, NeuralMLSError
 from neuralmls.figures.camera import VIEW_ANGLE, fitted
+from neuralmls.figures.page import png
 from neuralmls.figures.palette import heat
 from neuralmls.figures.render import Panel, render
-from PIL import Image
+from neuralmls.figures.stage import pyvista_or_refuse
 
 TETRAHEDRON = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
@@ -122,6 +126,10 @@ def test_what_cannot_be_drawn_is_refused_in_one_sentence(tmp_path: Path) -> None
         render([], tmp_path / "figure.png")
     with pytest.raises(ArgumentError, match="finite positions"):
         render([Panel("none", np.zeros((0, 3)))], tmp_path / "figure.png")
+    with pytest.raises(ArgumentError, match="at least one panel"):
+        render([panel] * 30, tmp_path / "figure.png")
+    with pytest.raises(ArgumentError, match=r"shape: expected faces \(f, 3\) that name points 0 to 3"):
+        render([Panel("shape", TETRAHEDRON, FACES + 1)], tmp_path / "figure.png")
     with pytest.raises(ArgumentError, match=r"shape: expected an array of shape \(4,\), found \(3,\)"):
         render([Panel("shape", TETRAHEDRON, FACES, weights=np.zeros(3))], tmp_path / "figure.png")
     with pytest.raises(FileError, match="there is no folder"):
@@ -133,3 +141,21 @@ def test_without_pyvista_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.setitem(sys.modules, "pyvista", None)
     with pytest.raises(NeuralMLSError, match=r"pip install 'neuralmls\[figures\]'"):
         render([Panel("shape", TETRAHEDRON, FACES)], tmp_path / "figure.png")
+
+
+def test_without_a_graphics_library_its_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(name: str) -> None:
+        raise OSError(name)
+
+    monkeypatch.setattr("neuralmls.figures.stage.ctypes.CDLL", missing)
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.delenv("DISPLAY", raising=False)
+    with pytest.raises(NeuralMLSError, match="install libegl1"):
+        pyvista_or_refuse()
+
+
+def test_a_long_title_stays_in_its_panel() -> None:
+    picture = np.full((40, 160, 3), 255, dtype=np.uint8)
+    page = np.asarray(Image.open(io.BytesIO(png([picture, picture], ["", "folder/" * 40 + "chair.obj"], 320))))
+    assert (page[:, :160] == 255).all()
+    assert (page[:, 160:] < 128).any()

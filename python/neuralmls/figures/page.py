@@ -8,19 +8,26 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from neuralmls.figures.palette import INK, SOURCE, TARGET, Colour, heat
+from neuralmls.figures.palette import INK, Colour, heat
 
 Picture = NDArray[np.uint8]
 
 
-def png(pictures: Sequence[Picture], titles: Sequence[str], width: int, *, marks: bool, weights: bool) -> bytes:
+def png(
+    pictures: Sequence[Picture],
+    titles: Sequence[str],
+    width: int,
+    *,
+    legend: Sequence[tuple[Colour, str]] = (),
+    weights: bool = False,
+) -> bytes:
     """The bytes of a PNG file `width` pixels wide.
 
     Parameters
     ----------
     pictures : panels of the same size, (height, width, 3), larger than they are to be shown
-    titles : one for each panel
-    marks : whether the legend explains the balls of control points
+    titles : one for each panel; what does not fit is cut off in front, where paths are least telling
+    legend : colours of balls, and what they mean, from right to left
     weights : whether the legend explains the heat map
     """
     from PIL import Image, ImageDraw
@@ -31,22 +38,24 @@ def png(pictures: Sequence[Picture], titles: Sequence[str], width: int, *, marks
     band = round(2.2 * text)
     page = Image.new("RGB", (width, panel_height + 2 * band), "white")
     pen = ImageDraw.Draw(page)
+    font = _font(text)
     for i, (picture, title) in enumerate(zip(pictures, titles, strict=True)):
         small = Image.fromarray(picture).resize((panel_width, panel_height), Image.Resampling.LANCZOS)
         page.paste(small, (i * panel_width, band))
-        pen.text(((i + 0.5) * panel_width, band / 2 + 2), title, fill=_rgb(INK), font=_font(text), anchor="mm")
+        while pen.textlength(title, font=font) > 0.95 * panel_width and len(title) > 2:
+            title = "…" + title.lstrip("…")[1:]
+        pen.text(((i + 0.5) * panel_width, band / 2 + 2), title, fill=_rgb(INK), font=font, anchor="mm")
     x, y = float(width - text), panel_height + 1.5 * band
     font = _font(round(0.75 * text))
-    for wanted, colour, label in ((marks, TARGET, "target"), (marks, SOURCE, "control point")):
-        if wanted:
-            pen.text((x, y), label, fill=_rgb(INK), font=font, anchor="rm")
-            x -= pen.textlength(label, font=font) + 0.7 * text
-            r = 0.3 * text
-            dot = Image.new("L", (64, 64))
-            ImageDraw.Draw(dot).ellipse((0, 0, 63, 63), fill=255)
-            dot = dot.resize((round(2 * r), round(2 * r)), Image.Resampling.LANCZOS)
-            page.paste(_rgb(colour), (round(x - r), round(y - r)), dot)
-            x -= 1.2 * text
+    for colour, label in legend:
+        pen.text((x, y), label, fill=_rgb(INK), font=font, anchor="rm")
+        x -= pen.textlength(label, font=font) + 0.7 * text
+        r = 0.3 * text
+        dot = Image.new("L", (64, 64))
+        ImageDraw.Draw(dot).ellipse((0, 0, 63, 63), fill=255)
+        dot = dot.resize((round(2 * r), round(2 * r)), Image.Resampling.LANCZOS)
+        page.paste(_rgb(colour), (round(x - r), round(y - r)), dot)
+        x -= 1.2 * text
     if weights:
         pen.text((text, y), "weight  0", fill=_rgb(INK), font=font, anchor="lm")
         left = round(1.4 * text + pen.textlength("weight  0", font=font))

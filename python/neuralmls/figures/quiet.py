@@ -11,7 +11,8 @@ from contextlib import contextmanager
 @contextmanager
 def native_silence() -> Iterator[None]:
     """Send what native code writes to standard error nowhere, for as long as the block lasts."""
-    sys.stderr.flush()
+    if sys.stderr is not None:
+        sys.stderr.flush()
     try:
         kept = os.dup(2)
     except OSError:  # there is no standard error
@@ -22,6 +23,5 @@ def native_silence() -> Iterator[None]:
             os.dup2(nowhere.fileno(), 2)
         yield
     finally:
-        sys.stderr.flush()
         os.dup2(kept, 2)
         os.close(kept)

@@ -81,10 +81,14 @@ def render(
     """
     if Path(path).suffix.lower() != ".png":
         raise FileError(f"{path}: expected a name that ends in .png")
-    if not panels or up not in ("y", "z") or not 64 <= width <= 16384:
-        raise ArgumentError("expected at least one panel, up as y or z, and a width of 64 to 16384 pixels")
+    if not panels or up not in ("y", "z") or not 64 * len(panels) <= width <= 16384:
+        found = f"{len(panels)} panels, {up}, {width} pixels"
+        raise ArgumentError(
+            f"expected at least one panel, up as y or z, a width of 64 pixels a panel to 16384, found {found}"
+        )
     pyvista = pyvista_or_refuse()
     shapes = [_in_space(panel.positions, panel.title) for panel in panels]
+    faces = [_faces(panel, len(shape)) for panel, shape in zip(panels, shapes, strict=True)]
     colours = [_colours(panel, len(shape)) for panel, shape in zip(panels, shapes, strict=True)]
     seen = list(shapes)
     if control_points is not None:
@@ -98,13 +102,13 @@ def render(
     panel_width = width // len(panels)
     camera = fitted(everything, azimuth=azimuth, elevation=elevation, up=up, aspects=ASPECTS)
     pictures = []
-    for number, panel in enumerate(panels):
+    for number in range(len(panels)):
         stage = Stage(pyvista, panel_width, round(panel_width / camera.aspect), camera)
         shape = (shapes[number] - origin) / size
-        if panel.faces is None or not np.size(panel.faces):
-            stage.cloud(shape, colours[number])
+        if len(faces[number]):
+            stage.surface(shape, faces[number], colours[number])
         else:
-            stage.surface(shape, np.asarray(panel.faces), colours[number])
+            stage.cloud(shape, colours[number])
         if control_points is not None:
             stage.balls(((p if number == 0 else q) - origin) / size, SOURCE if number == 0 else TARGET)
             if number == 0:
@@ -112,7 +116,10 @@ def render(
         pictures.append(stage.picture())
     titles = [panel.title for panel in panels]
     weights = any(panel.weights is not None for panel in panels)
-    write_atomically(path, png(pictures, titles, width, marks=control_points is not None, weights=weights))
+    legend = [] if control_points is None else [(SOURCE, "control point")]
+    if legend and (len(panels) > 1 or (p != q).any()):
+        legend.insert(0, (TARGET, "target"))
+    write_atomically(path, png(pictures, titles, width, legend=legend, weights=weights))
 
 
 def _in_space(values: ArrayLike, what: str) -> Array:
@@ -121,6 +128,14 @@ def _in_space(values: ArrayLike, what: str) -> Array:
         expected = "finite positions (n, d), n > 0, d = 1, 2 or 3"
         raise ArgumentError(f"{what}: expected {expected}, found {points.shape}")
     return np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
+
+
+def _faces(panel: Panel, count: int) -> NDArray[np.int64]:
+    """The faces of a panel, (f, 3), none for a cloud."""
+    faces = np.zeros((0, 3), dtype=np.int64) if panel.faces is None else np.asarray(panel.faces, dtype=np.int64)
+    if faces.ndim != 2 or faces.shape[1] != 3 or (faces < 0).any() or (faces >= count).any():
+        raise ArgumentError(f"{panel.title}: expected faces (f, 3) that name points 0 to {count - 1}")
+    return faces
 
 
 def _colours(panel: Panel, count: int) -> NDArray[np.uint8]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
+import sys
 from typing import Any
 
 import numpy as np
@@ -28,16 +30,30 @@ def pyvista_or_refuse() -> Any:
     Raises
     ------
     NeuralMLSError
-        It is not installed.
+        It is not installed, or this machine has nothing to draw with.
     """
-    # Without a display VTK would complain about X, then do without it: ask for the off-screen window at once.
-    if os.name == "posix" and not os.environ.get("DISPLAY"):
-        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+    # Without a display VTK would complain about X before it does without; without a library it would crash.
+    if sys.platform == "linux" and not os.environ.get("DISPLAY"):
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", _window_without_display())
     try:
         import pyvista
     except ImportError as error:
         raise NeuralMLSError("figures need PyVista: pip install 'neuralmls[figures]'") from error
     return pyvista
+
+
+def _window_without_display() -> str:
+    """The kind of VTK's windows for which this machine has the library."""
+    for library, window in (("libEGL.so.1", "vtkEGLRenderWindow"), ("libOSMesa.so.8", "vtkOSOpenGLRenderWindow")):
+        try:
+            ctypes.CDLL(library)
+        except OSError:
+            continue
+        return window
+    raise NeuralMLSError(
+        "figures need a library to draw without a display, and neither libEGL nor libOSMesa is there: "
+        "install libegl1 (Debian, Ubuntu) or mesa-libEGL (Fedora)"
+    )
 
 
 class Stage:

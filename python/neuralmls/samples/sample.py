@@ -58,6 +58,11 @@ class Sample:
         """The polygons cut into triangles, (f, 3), each as a fan about its first corner."""
         return np.array([[f[0], f[k], f[k + 1]] for f in self.faces for k in range(1, len(f) - 1)], dtype=np.int64)
 
+    @property
+    def colours(self) -> NDArray[np.float64]:
+        """The colour of each vertex's material, (n, 3), 0 to 1."""
+        return np.concatenate([np.tile(self.materials[part.material], (len(part.vertices), 1)) for part in self.parts])
+
 
 def write_obj(sample: Sample, path: str | os.PathLike[str]) -> None:
     """Write a sample as an OBJ file with groups, materials, normals and texture coordinates, the MTL file beside it.
