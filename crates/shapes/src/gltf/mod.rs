@@ -13,7 +13,7 @@
 //! | `scene`, `affine` | nodes, skins and their maps into the world |
 //! | `mesh` | primitives and instances: positions and faces |
 //! | `turned` | new positions, normals and tangents in a node's own space |
-//! | `write`, `output` | which accessor gets what; the changed JSON and buffers |
+//! | `write`, `output`, `splice` | which accessor gets what; the changed buffers; the changed text |
 
 mod accessor;
 mod affine;
@@ -25,6 +25,7 @@ mod json;
 mod mesh;
 mod output;
 mod scene;
+mod splice;
 mod turned;
 mod write;
 
@@ -65,7 +66,7 @@ pub(crate) fn read_gltf(source: &[u8], side_files: &SideFiles<'_>) -> Result<Par
 /// Reads a `.glb`.
 pub(crate) fn read_glb(source: &[u8], side_files: &SideFiles<'_>) -> Result<Parsed, Error> {
     let glb = glb::split(source)?;
-    read(source, &source[glb.json], Some(glb.bin.map_or(&[][..], |bin| &source[bin])), side_files)
+    read(source, glb.text(source), Some(glb.bin.map_or(&[][..], |bin| &source[bin])), side_files)
 }
 
 /// The text without a byte order mark.

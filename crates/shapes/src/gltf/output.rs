@@ -3,14 +3,12 @@
 use std::borrow::Cow;
 
 use base64::Engine;
-use serde::Serialize;
-use serde_json::ser::PrettyFormatter;
-use serde_json::{json, Map, Serializer, Value};
+use serde_json::{json, Map, Value};
 
 use super::accessor::Component;
 use super::buffers::{Origin, BASE64};
+use super::splice::splice;
 use super::turned::Content;
-use super::write::bound;
 use super::{glb, without_mark, Gltf};
 use crate::error::Error;
 use crate::shape::Written;
@@ -137,7 +135,7 @@ impl<'a> Output<'a> {
             }
             for (k, stored) in bounds.into_iter().enumerate() {
                 if old[k].as_f64() != Some(stored) {
-                    old[k] = bound(stored, whole);
+                    old[k] = if whole { Value::from(stored as i64) } else { Value::from(stored) };
                 }
             }
         }
@@ -167,42 +165,15 @@ impl<'a> Output<'a> {
         let same = self.json == self.gltf.json;
         let bytes = if self.gltf.binary {
             let glb = glb::split(self.source)?;
-            let text = (!same).then(|| serialised(&self.json, &self.source[glb.json.clone()]));
+            let text = (!same).then(|| splice(glb.text(self.source), &self.json));
             glb::join(&glb, self.source, text.as_deref(), bin.as_deref())?
         } else if same {
             self.source.to_vec()
         } else {
-            serialised(&self.json, self.source)
+            let text = without_mark(self.source);
+            let mark = &self.source[..self.source.len() - text.len()];
+            [mark, &splice(text, &self.json)].concat()
         };
         Ok(Written { bytes, side_files })
     }
-}
-
-/// JSON as text, indented as `like` is, with its line ends, and with what is before and behind it.
-fn serialised(json: &Value, like: &[u8]) -> Vec<u8> {
-    let text = without_mark(like);
-    let mark = &like[..like.len() - text.len()];
-    let trimmed = text.trim_ascii_end();
-    let mut out = Vec::with_capacity(text.len());
-    match indentation(text) {
-        None => serde_json::to_writer(&mut out, json).expect("a Value can be written to memory"),
-        Some(indent) => {
-            let mut to = Serializer::with_formatter(&mut out, PrettyFormatter::with_indent(indent));
-            json.serialize(&mut to).expect("a Value can be written to memory");
-            if trimmed.windows(2).any(|pair| pair == b"\r\n") {
-                // Within strings, line ends are escaped.
-                let lines: Vec<&[u8]> = out.split(|b| *b == b'\n').collect();
-                out = lines.join(&b"\r\n"[..]);
-            }
-        }
-    }
-    [mark, &out, &text[trimmed.len()..]].concat()
-}
-
-/// The white space before the first key, if that has its own line.
-fn indentation(text: &[u8]) -> Option<&[u8]> {
-    let rest = text.trim_ascii_start().strip_prefix(b"{")?;
-    let space = &rest[..rest.len() - rest.trim_ascii_start().len()];
-    let line = space.iter().rposition(|b| *b == b'\n')?;
-    Some(&space[line + 1..])
 }

@@ -116,7 +116,11 @@ impl Model {
                 let square: f64 = n.iter().map(|c| c * c).sum();
                 if square > 0.0 {
                     let part = (0..3).map(|k| n[k] * along[k]).sum::<f64>() / square;
-                    along = std::array::from_fn(|k| along[k] - part * n[k]);
+                    let across: [f64; 3] = std::array::from_fn(|k| along[k] - part * n[k]);
+                    // A tangent along the normal (some exporters write such) has no direction across it.
+                    if length(across) > 1e-3 * length(along) {
+                        along = across;
+                    }
                 }
             }
             let scale = length(t) / length(along);

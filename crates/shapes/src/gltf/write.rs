@@ -6,8 +6,6 @@
 
 use std::collections::HashMap;
 
-use serde_json::Value;
-
 use super::accessor::Reach;
 use super::json::At;
 use super::mesh::{Instance, Primitive};
@@ -233,13 +231,4 @@ fn shared(gltf: &Gltf) -> Result<Vec<bool>, Error> {
         }
     }
     Ok(shared)
-}
-
-/// A number in JSON for what an accessor stores: exact, whole ones without a point.
-pub(super) fn bound(stored: f64, whole: bool) -> Value {
-    if whole {
-        Value::from(stored as i64)
-    } else {
-        Value::from(stored)
-    }
 }
