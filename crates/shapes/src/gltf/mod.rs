@@ -93,7 +93,7 @@ fn read(source: &[u8], text: &[u8], bin: Option<&[u8]>, side_files: &SideFiles<'
     let accessors = accessor::read_accessors(&root, &views, room(input, 1))?;
     let meshes = mesh::read_meshes(&root, &accessors)?;
     let nodes = scene::read_nodes(&root, meshes.len(), root.items("skins")?.len())?;
-    let skins = scene::read_skins(&root, &nodes, &accessors, &views, &buffers)?;
+    let skins = scene::read_skins(&root, &nodes, &accessors, &views, &buffers, room(input, 1))?;
     let mut model =
         Model { buffers, views, accessors, meshes, nodes, skins, instances: Vec::new(), blocks: Vec::new() };
     mesh::place(&mut model, room(input, 4))?;
