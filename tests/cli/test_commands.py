@@ -94,8 +94,8 @@ def test_demo_makes_everything_and_says_where(run, here):
         assert bent[:, 1].min() < source[:, 1].min() - 0.1
     assert np.abs(neural - classic).max() > 0.01
     assert "out/chair-neural.obj" in ran.out
-    assert run("demo").code == 2
-    assert run("demo", "--force").code == 0
+    refusal = run("demo")
+    assert (refusal.code, "--force" in refusal.err) == (2, True)
 
 
 def test_demo_goes_on_without_pyvista(run, here, monkeypatch):
@@ -107,6 +107,7 @@ def test_demo_goes_on_without_pyvista(run, here, monkeypatch):
     assert "neuralmls[figures]" in ran.err
     assert (here / "deep" / "er" / "chair-classic.obj").is_file()
     assert not (here / "deep" / "er" / "chair.png").exists()
+    assert run("demo", "-o", "deep/er", "--force").code == 0
 
 
 def test_render_without_pyvista_is_refused(refused, monkeypatch):
@@ -114,16 +115,15 @@ def test_render_without_pyvista_is_refused(refused, monkeypatch):
     refused(1, "render", "shape.obj", "-o", "out.png", words=("neuralmls[figures]",))
 
 
-@pytest.mark.parametrize("kind", ["neural", "inverse-distance"])
-def test_render_draws_shapes_points_and_weights(run, here, kind):
+def test_render_draws_shapes_points_and_weights(run, here):
     pytest.importorskip("pyvista", reason="figures need PyVista")
     image = pytest.importorskip("PIL.Image")
     points = ("--points", "points.csv")
     assert run("deform", "shape.obj", *points, "-o", "out.obj", "--move", "top=0,1,0", "-q").code == 0
-    ran = run("render", "shape.obj", "out.obj", "-o", "plain.png")
-    assert (ran.code, ran.out) == (0, "plain.png: shape.obj, out.obj\n"), ran.err
-    assert run("render", "shape.obj", "-o", "heat.png", *points, "--heat", "top", "--weights", kind).code == 0
-    for name in ("plain.png", "heat.png"):
-        pixels = np.asarray(image.open(here / name).convert("RGB"))
-        assert pixels.shape[1] == 1600
-        assert len(np.unique(pixels.reshape(-1, 3), axis=0)) > 20
+    ran = run("render", "shape.obj", "out.obj", "-o", "out.png", *points, "--heat", "top")
+    assert (ran.code, ran.out) == (0, "out.png: shape.obj, out.obj\n"), ran.err
+    pixels = np.asarray(image.open(here / "out.png").convert("RGB")).astype(int)
+    assert pixels.shape[1] == 1600
+    left, right = pixels[:, :800], pixels[:, 800:]
+    warm = [int((half[:, :, 0] > half[:, :, 2] + 60).sum()) for half in (left, right)]
+    assert warm[0] > 10 * max(warm[1], 100)  # the heat map and the red balls are in the first panel only

@@ -96,7 +96,7 @@ def test_summary_for_machines(run):
     assert told["weights"]["loss"] > 0
     assert (told["transform"], told["temperature"]) == ("rigid", 1.5)
     assert [point["name"] for point in told["control_points"]] == ["foot", "side", "top"]
-    assert list(told["seconds"]) == ["reading", "training", "binding", "moving", "writing"]
+    assert list(told["seconds"]) == ["read", "train", "bind", "move", "write"]
     assert told["warnings"] == []
 
 
@@ -128,7 +128,7 @@ def test_summary_for_people(run):
         "rigid, temperature 1",
     ):
         assert words in ran.out
-    for stage in ("reading", "training", "binding", "moving", "writing"):
+    for stage in ("read ", "train ", "bind ", "move ", "write ", "in all"):
         assert stage in ran.out
     top = next(line for line in lines if line.startswith("  top")).split()
     assert top[1] == "1.0000"

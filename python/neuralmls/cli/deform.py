@@ -72,7 +72,7 @@ def deform(
 
     as_number("temperature", temperature, 0)
     stages = Stages(quiet=quiet)
-    with stages.stage("reading"):
+    with stages.stage("read"):
         source = read(shape)
         if not to_stdout:
             outputs.check_ending(output, source.extensions, f"{source.format} is not converted")
@@ -84,7 +84,7 @@ def deform(
     for sentence in warnings:
         console.warning(sentence)
     result = deformation.deformed(source, control_points, choice, transform, temperature, stages)
-    with stages.stage("writing"):
+    with stages.stage("write"):
         files = _write(source, result, output, force=force)
     told = summary.summary(source, control_points, choice, transform, temperature, result)
     told |= {"output": str(output), "files": files, "warnings": warnings, "seconds": stages.seconds}

@@ -55,11 +55,11 @@ def deformed(
     stages: Stages,
 ) -> Deformation:
     """Fit the weights, bind the shape to them, and move the control points to their targets."""
-    with stages.stage("training" if choice.kind == "neural" else "weights") as report:
+    with stages.stage(choice.stage) as report:
         weights = choice.make(points.sources, shape.bounds, report)
-    with stages.stage("binding") as report:
+    with stages.stage("bind") as report:
         deformer = Deformer(shape.positions, weights, transform=transform, progress=report)
-    with stages.stage("moving") as report:
+    with stages.stage("move") as report:
         maps: NDArray[np.float64] | None = None
         if shape.has_normals:
             y, maps = deformer.deform(points.targets, temperature, return_maps=True, progress=report)
