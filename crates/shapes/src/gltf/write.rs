@@ -54,11 +54,15 @@ pub(super) fn write(gltf: &Gltf, source: &[u8], moved: &Moved<'_>) -> Result<Wri
     let mut changed: Vec<_> = versions.iter().collect();
     changed.sort_unstable_by_key(|(accessor, _)| **accessor);
     for (&accessor, contents) in changed {
-        for (version, content) in contents.iter().enumerate() {
-            let own = version == 0 && !kept[accessor];
-            let index = if own { accessor } else { output.copy("accessors", accessor) };
+        // Copies are made before the original changes, perhaps to another component type.
+        let own = |version: usize| version == 0 && !kept[accessor];
+        let indices: Vec<usize> = (0..contents.len())
+            .map(|version| if own(version) { accessor } else { output.copy("accessors", accessor) })
+            .collect();
+        for (version, (content, index)) in contents.iter().zip(indices).enumerate() {
             let old = &model.accessors[accessor];
-            if own && old.component == content.component && !shared[accessor] && old.sparse.is_none() {
+            if own(version) && old.component == content.component && !shared[accessor] && old.sparse.is_none()
+            {
                 output.overwrite(accessor, content);
             } else {
                 output.append(index, accessor, content);
