@@ -96,7 +96,7 @@ CLASSIC = ("--weights", "inverse-distance")
         (("--steps", "0"), ("steps", "found 0")),
         (("--steps", "-5"), ("steps", "-5")),
         (("--seed", "-1"), ("seed", "-1")),
-        (("--steps", "many"), ("--steps", "integer", "deform --help")),
+        (("--steps", "many"), ("--steps", " int", "deform --help")),
         (("--weights", "magic"), ("--weights", "'magic'", "inverse-distance")),
         (("--transform", "projective"), ("--transform", "'projective'", "similarity")),
         (("--alpha", "2"), ("--alpha", "inverse-distance", "neural")),
