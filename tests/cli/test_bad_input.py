@@ -21,6 +21,7 @@ HEADER = "name,x,y,z\n"
         ("infinite.obj", "v 0 0 0\nv 0 1e999 0\n", ("line 2", "1e999")),
         ("face.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 7\n", ("line 4", "7", "3")),
         ("one-place.obj", "v 1 1 1\nv 1 1 1\n", ("all 2 vertices", "one place")),
+        ("huge.obj", "v -1e308 0 0\nv 1e308 0 0\nv 0 1 0\nf 1 2 3\n", ("1e+150 units",)),
         ("one.xyz", "0 0 0\n", ("only one vertex",)),
     ],
 )
