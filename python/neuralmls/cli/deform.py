@@ -124,12 +124,4 @@ def _write(shape: Shape, result: Deformation, output: Path, *, force: bool) -> l
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()
         return []
-    if shape.format == "glTF" and not force:  # its buffers keep their names, which may be taken, by the input's own
-        for name in shape.encode(result.positions, maps=result.maps)[1]:
-            beside = output.parent / name
-            if beside.exists():
-                raise ArgumentError(
-                    f"{output}: '{beside}', which is written beside it, is there already: "
-                    "write into another folder, or overwrite it with --force"
-                )
-    return [str(path) for path in shape.write(output, result.positions, maps=result.maps)]
+    return [str(path) for path in shape.write(output, result.positions, maps=result.maps, overwrite=force)]

@@ -32,7 +32,7 @@ mod write;
 use serde_json::Value;
 
 use self::accessor::{Accessor, View};
-use self::buffers::Buffers;
+use self::buffers::{percent_decoded, Buffers, Origin};
 use self::json::At;
 use self::mesh::{Block, Instance, Primitive};
 use self::scene::{Node, Skin};
@@ -144,6 +144,16 @@ impl Document for Gltf {
     fn has_normals(&self) -> bool {
         let shown = self.model.instances.iter().flat_map(|i| &self.model.meshes[i.mesh]);
         shown.into_iter().any(|p| p.position.is_some() && (p.normal.is_some() || p.tangent.is_some()))
+    }
+
+    fn named_files(&self) -> Vec<String> {
+        let buffers = self.model.buffers.storages.iter().filter_map(|storage| match &storage.origin {
+            Origin::File(path) => Some(path.clone()),
+            _ => None,
+        });
+        let images = self.json["images"].as_array().into_iter().flatten();
+        let uris = images.filter_map(|image| image["uri"].as_str()).filter(|uri| !uri.starts_with("data:"));
+        buffers.chain(uris.map(|uri| String::from_utf8_lossy(&percent_decoded(uri)).into_owned())).collect()
     }
 
     fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {

@@ -6,12 +6,12 @@ use base64::Engine;
 use serde_json::{json, Map, Value};
 
 use super::accessor::Component;
-use super::buffers::{Origin, BASE64};
+use super::buffers::{percent_encoded, Origin, BASE64};
 use super::splice::splice;
 use super::turned::Content;
 use super::{glb, without_mark, Gltf};
 use crate::error::Error;
-use crate::shape::Written;
+use crate::shape::{SideFile, Written};
 
 pub(super) struct Output<'a> {
     gltf: &'a Gltf,
@@ -141,16 +141,29 @@ impl<'a> Output<'a> {
         }
     }
 
-    /// The file, and the side files that changed.
-    pub fn finish(mut self) -> Result<Written, Error> {
+    /// The file, and the side files that changed, called after `stem` if given.
+    pub fn finish(mut self, stem: Option<&str>) -> Result<Written, Error> {
         let model = &self.gltf.model;
-        let mut side_files = Vec::new();
+        let mut side_files: Vec<SideFile> = Vec::new();
         let mut bin = None;
         for (s, bytes) in std::mem::take(&mut self.storages).into_iter().enumerate() {
             let Cow::Owned(bytes) = bytes else { continue };
             match &model.buffers.storages[s].origin {
                 Origin::Bin => bin = Some(bytes),
-                Origin::File(path) => side_files.push((path.clone(), bytes)),
+                Origin::File(path) => {
+                    let name = match stem {
+                        None => path.clone(),
+                        Some(stem) if side_files.is_empty() => format!("{stem}.bin"),
+                        Some(stem) => format!("{stem}-{}.bin", side_files.len() + 1),
+                    };
+                    if name != *path {
+                        for (b, _) in model.buffers.buffers.iter().enumerate().filter(|(_, b)| b.storage == s)
+                        {
+                            self.array("buffers")[b]["uri"] = percent_encoded(&name).into();
+                        }
+                    }
+                    side_files.push(SideFile { name, was: path.clone(), bytes });
+                }
                 Origin::Embedded(head) => {
                     let uri = format!("{head}{}", BASE64.encode(&bytes));
                     let buffer = model.buffers.buffers.iter().position(|b| b.storage == s);

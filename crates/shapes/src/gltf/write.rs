@@ -95,7 +95,7 @@ pub(super) fn write(gltf: &Gltf, source: &[u8], moved: &Moved<'_>) -> Result<Wri
             output.json["nodes"][instance.node]["mesh"] = entries[instance.mesh][form].into();
         }
     }
-    output.finish()
+    output.finish(moved.stem)
 }
 
 struct Planner<'a> {

@@ -31,6 +31,8 @@ struct Reader {
     furthest: Option<(u32, u64)>,
     /// The highest normal that a face names, from 0.
     furthest_normal: Option<u32>,
+    /// What `mtllib` statements name.
+    libraries: Vec<String>,
     /// Whether something names normals that cannot be renumbered.
     fixed_normals: bool,
 }
@@ -44,6 +46,7 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
             tally.comment_or_blank(&statement);
             continue;
         };
+        let rest = keyword.end;
         match &statement.bytes[keyword] {
             b"v" => tally.position(reader.position(&statement, words)?),
             b"vn" => reader.normals += 1,
@@ -51,6 +54,10 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
             other => {
                 // Surfaces name normals too.
                 reader.fixed_normals |= other == b"surf";
+                if other == b"mtllib" {
+                    let names = statement.bytes[rest..].trim_ascii();
+                    reader.libraries.push(String::from_utf8_lossy(names).into_owned());
+                }
                 tally.statement(other, &statement);
             }
         }
@@ -67,6 +74,7 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
         decimals: reader.decimals,
         has_normals: reader.normals > 0,
         may_split: in_range && !reader.fixed_normals,
+        libraries: reader.libraries,
         by_vertex: reader.normals == count && reader.furthest_normal.is_none() && !reader.fixed_normals,
     };
     Ok(Parsed {

@@ -18,6 +18,8 @@ pub(super) struct Obj {
     pub has_normals: bool,
     /// Whether a normal may become several, which renumbers those that follow.
     pub may_split: bool,
+    /// What `mtllib` statements name: one file, or several with spaces between them.
+    pub libraries: Vec<String>,
     /// Whether normal i belongs to position i (a point cloud).
     pub by_vertex: bool,
 }
@@ -25,6 +27,11 @@ pub(super) struct Obj {
 impl Document for Obj {
     fn has_normals(&self) -> bool {
         self.has_normals
+    }
+
+    fn named_files(&self) -> Vec<String> {
+        let words = self.libraries.iter().flat_map(|line| line.split_ascii_whitespace());
+        words.chain(self.libraries.iter().map(String::as_str)).map(String::from).collect()
     }
 
     fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {
