@@ -5,13 +5,17 @@ BIN := .venv/bin
 RUST := Cargo.toml Cargo.lock $(shell find crates -name '*.rs' -o -name Cargo.toml)
 FUZZ_SECONDS ?= 30
 
-.PHONY: demo test rust python fuzz wasm tools clean
+.PHONY: demo test bench rust python fuzz wasm tools clean
 
 demo: .venv/figures.stamp
 	$(BIN)/neuralmls demo -o out --force
 
 test: rust wasm python fuzz
 	@echo "make test: everything passed"
+
+# Times the kernels against PyTorch, NumPy and molesq, and checks every answer. PyTorch from PyPI takes 6 GB of disk.
+bench: .venv/bench.stamp
+	$(BIN)/python -m benchmarks
 
 rust: tools
 	cargo fmt --all --check
@@ -44,6 +48,10 @@ fuzz: tools
 .venv/test.stamp: .venv/bin/python pyproject.toml $(RUST)
 	$(BIN)/python -m pip install --quiet --editable '.[figures,test]'
 	@touch $@ .venv/figures.stamp
+
+.venv/bench.stamp: .venv/bin/python pyproject.toml $(RUST)
+	$(BIN)/python -m pip install --quiet --editable '.[bench]'
+	@touch $@
 
 tools:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { echo "Python 3.11 or later is missing: install it from https://www.python.org, or say where it is with PYTHON=..." >&2; exit 1; }
