@@ -51,6 +51,18 @@ impl Simd {
     }
 }
 
+/// Lanes of a kernel: one register of AVX-512, two of AVX2.
+pub(crate) const LANES: usize = 16;
+
+/// One number a lane, aligned as a register.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Lanes(pub [f32; LANES]);
+
+impl Lanes {
+    pub(crate) const ZERO: Lanes = Lanes([0.0; LANES]);
+}
+
 /// `a * b + c`, in one instruction where `FMA`.
 #[inline(always)]
 pub(crate) fn multiply_add<const FMA: bool>(a: f32, b: f32, c: f32) -> f32 {
@@ -63,10 +75,10 @@ pub(crate) fn multiply_add<const FMA: bool>(a: f32, b: f32, c: f32) -> f32 {
 
 /// Defines `fn name(simd: Simd, arguments...)` that calls the kernel `body::<FMA>(arguments...)` compiled for `simd`.
 macro_rules! multiversion {
-    ($(#[$meta:meta])* fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $body:ident) => {
+    ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $body:ident) => {
         $(#[$meta])*
         #[allow(clippy::too_many_arguments)]
-        fn $name(simd: $crate::simd::Simd, $($arg: $type),*) $(-> $result)? {
+        $vis fn $name(simd: $crate::simd::Simd, $($arg: $type),*) $(-> $result)? {
             #[cfg(target_arch = "x86_64")]
             {
                 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt")]
