@@ -17,12 +17,12 @@ use crate::error::{check_points, Error};
 use crate::frame::Frame;
 use crate::parallel::{for_each_block, for_each_block_pair, for_each_task};
 use crate::progress::{report, Progress};
-use crate::simd::{Lanes, LANES};
+use crate::simd::{Aligned, WIDTH};
 
 /// Points a leaf.
 pub(crate) const LEAF: usize = 64;
 /// Blocks a leaf.
-pub(crate) const LEAF_BLOCKS: usize = LEAF / LANES;
+pub(crate) const LEAF_BLOCKS: usize = LEAF / WIDTH;
 /// Levels that are split one after the other, all nodes of a level at once; below, each subtree is one task.
 const LEVELS: usize = 6;
 
@@ -33,7 +33,7 @@ pub struct PointTree {
     /// For each place in the tree the point's own index.
     order: Vec<u32>,
     /// 16 points a block; the last is filled up with the last point. Coordinates beyond the dimension are 0.
-    blocks: Vec<[Lanes; 3]>,
+    blocks: Vec<[Aligned; 3]>,
     /// One a node, in preorder.
     boxes: Vec<Region>,
 }
@@ -95,15 +95,15 @@ impl PointTree {
         build(&mut points, &mut boxes, progress)?;
 
         let mut order = vec![0; n];
-        let mut blocks = vec![[Lanes::ZERO; 3]; n.div_ceil(LANES)];
+        let mut blocks = vec![[Aligned::ZERO; 3]; n.div_ceil(WIDTH)];
         const PACK: usize = 256;
-        for_each_block_pair(&mut order, PACK * LANES, &mut blocks, PACK, |index, order, blocks| {
-            let points = &points[PACK * LANES * index..][..order.len()];
+        for_each_block_pair(&mut order, PACK * WIDTH, &mut blocks, PACK, |index, order, blocks| {
+            let points = &points[PACK * WIDTH * index..][..order.len()];
             for (order, point) in order.iter_mut().zip(points) {
                 *order = point.index;
             }
-            for (block, points) in blocks.iter_mut().zip(points.chunks(LANES)) {
-                for lane in 0..LANES {
+            for (block, points) in blocks.iter_mut().zip(points.chunks(WIDTH)) {
+                for lane in 0..WIDTH {
                     let point = points[lane.min(points.len() - 1)];
                     for k in 0..3 {
                         block[k].0[lane] = point.x[k];
@@ -140,7 +140,7 @@ impl PointTree {
         &self.order
     }
 
-    pub(crate) fn blocks(&self) -> &[[Lanes; 3]] {
+    pub(crate) fn blocks(&self) -> &[[Aligned; 3]] {
         &self.blocks
     }
 
@@ -267,7 +267,7 @@ mod tests {
             let region = tree.region(node);
             for place in node.first * LEAF..((node.first + node.count) * LEAF).min(n) {
                 for k in 0..dim {
-                    let coordinate = tree.blocks[place / LANES][k].0[place % LANES];
+                    let coordinate = tree.blocks[place / WIDTH][k].0[place % WIDTH];
                     assert_eq!(coordinate, x[dim * tree.order[place] as usize + k] as f32);
                     let distance = f64::from(coordinate) - f64::from(region.centre[k]);
                     assert!(distance.abs() <= f64::from(region.half[k]), "{distance} {region:?}");

@@ -7,7 +7,7 @@ use super::network::{relu, Layer, Network};
 use crate::error::Error;
 use crate::parallel::{for_each_block, for_each_task, SharedRows};
 use crate::progress::{report, Progress};
-use crate::simd::LANES;
+use crate::simd::WIDTH;
 use crate::tree::PointTree;
 
 /// Points evaluated at once by one thread: the activations of both hidden layers stay in its cache.
@@ -62,8 +62,8 @@ pub(super) unsafe fn evaluate_places(
     let order = &tree.order()[first..(first + count).min(tree.len())];
     let mut input = Vec::new();
     for place in first..first + order.len() {
-        let block = &tree.blocks()[place / LANES];
-        let x: [f32; 3] = std::array::from_fn(|k| block[k].0[place % LANES]);
+        let block = &tree.blocks()[place / WIDTH];
+        let x: [f32; 3] = std::array::from_fn(|k| block[k].0[place % WIDTH]);
         features::append(&x[..dim], network.frequencies(), &mut input);
     }
     let mut logits = vec![0.0; order.len() * m];

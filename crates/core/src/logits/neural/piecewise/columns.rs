@@ -1,14 +1,14 @@
 //! Layer 1 over a box: which of its neurons are surely on, surely off, or open. In layer 2 each of them is a column.
 
-use super::SLACK;
-use crate::simd::{multiply_add, multiversion, Lanes, LANES};
+use super::bounds::bounds;
+use crate::simd::{multiversion, Aligned, Lanes, WIDTH};
 use crate::tree::Region;
 
 /// Neurons of layer 1, 16 at a time: `w` (3 coordinates) and `b`.
 #[derive(Default)]
 pub(super) struct Columns {
     pub len: usize,
-    pub planes: Vec<[Lanes; 4]>,
+    pub planes: Vec<[Aligned; 4]>,
 }
 
 /// A neuron of layer 1 that is on or open in a box, as a term of layer 2's rows.
@@ -48,7 +48,7 @@ multiversion! {
 }
 
 #[inline(always)]
-fn sort_body<const FMA: bool>(parent: &Columns, region: &Region, child: &mut Columns, sorted: &mut Sorted) {
+fn sort_body<L: Lanes>(parent: &Columns, region: &Region, child: &mut Columns, sorted: &mut Sorted) {
     // One more than can be needed, because a column is written before it is known whether it counts.
     for terms in [&mut sorted.on, &mut sorted.open] {
         if terms.len() <= parent.len {
@@ -58,38 +58,28 @@ fn sort_body<const FMA: bool>(parent: &Columns, region: &Region, child: &mut Col
     child.planes.clear();
     let [mut on, mut open] = [0, 0];
     for (chunk, planes) in parent.planes.iter().enumerate() {
-        let [x, y, z, b] = planes;
-        let (mut lower, mut upper) = (Lanes::ZERO, Lanes::ZERO);
-        let (mut slope, mut spread) = (Lanes::ZERO, Lanes::ZERO);
-        for t in 0..LANES {
-            let terms: [f32; 3] = std::array::from_fn(|k| planes[k].0[t] * region.centre[k]);
-            let middle = terms[0] + terms[1] + terms[2] + b.0[t];
-            let mut half = x.0[t].abs() * region.half[0];
-            half = multiply_add::<FMA>(y.0[t].abs(), region.half[1], half);
-            half = multiply_add::<FMA>(z.0[t].abs(), region.half[2], half);
-            let size = terms[0].abs() + terms[1].abs() + terms[2].abs() + b.0[t].abs() + half;
-            half = multiply_add::<FMA>(SLACK, size, half);
-            lower.0[t] = middle - half;
-            upper.0[t] = middle + half;
-            // Between lower and upper relu(a) lies between slope * a and slope * a - slope * lower.
-            slope.0[t] = upper.0[t] / (upper.0[t] - lower.0[t]);
-            spread.0[t] = -0.5 * slope.0[t] * lower.0[t];
-        }
-        for t in 0..LANES.min(parent.len - LANES * chunk) {
-            let (is_off, is_on) = (upper.0[t] <= 0.0, lower.0[t] >= 0.0);
-            let row = [x.0[t], y.0[t], z.0[t], b.0[t]];
-            let column = (LANES * chunk + t) as u32;
+        let map = [0, 1, 2, 3].map(|k| L::load(&planes[k].0));
+        let (lower, upper) = bounds(map, L::splat(0.0), region);
+        // Between lower and upper relu(a) lies between slope * a and slope * a - slope * lower.
+        let slope = upper.div(upper.sub(lower));
+        let spread = slope.mul(lower).mul(L::splat(-0.5));
+        let (lower, upper) = (lower.store(), upper.store());
+        let (slope, spread) = (slope.store(), spread.store());
+        for t in 0..WIDTH.min(parent.len - WIDTH * chunk) {
+            let (is_off, is_on) = (upper[t] <= 0.0, lower[t] >= 0.0);
+            let row = [planes[0].0[t], planes[1].0[t], planes[2].0[t], planes[3].0[t]];
+            let column = (WIDTH * chunk + t) as u32;
             sorted.on[on] = Term { map: row, spread: 0.0, column };
             on += usize::from(is_on & !is_off);
-            let mut map = row.map(|v| v * slope.0[t]);
-            map[3] += spread.0[t];
-            sorted.open[open] = Term { map, spread: spread.0[t], column };
-            if open == LANES * child.planes.len() {
-                child.planes.push([Lanes::ZERO; 4]);
+            let s = slope[t];
+            let map = [row[0] * s, row[1] * s, row[2] * s, row[3] * s + spread[t]];
+            sorted.open[open] = Term { map, spread: spread[t], column };
+            if open == WIDTH * child.planes.len() {
+                child.planes.push([Aligned::ZERO; 4]);
             }
             let last = child.planes.last_mut().expect("pushed above");
             for k in 0..4 {
-                last[k].0[open % LANES] = row[k];
+                last[k].0[open % WIDTH] = row[k];
             }
             open += usize::from(!is_on & !is_off);
         }

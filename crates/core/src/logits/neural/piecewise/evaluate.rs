@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::logits::neural::{dense, network::Network};
 use crate::parallel::{for_each_task, SharedRows};
 use crate::progress::Progress;
-use crate::simd::{Simd, LANES};
+use crate::simd::{Simd, WIDTH};
 use crate::tree::{Node, PointTree, LEAF, LEAF_BLOCKS};
 
 /// Nodes of this depth are made from the whole network.
@@ -118,7 +118,7 @@ impl Walk<'_> {
         );
         let columns = level.part.columns.len;
         // As many rows are usually open as columns.
-        let rows = (2 * columns + LANES).min(whole.rows()) + LANES * whole.heads.groups;
+        let rows = (2 * columns + WIDTH).min(whole.rows()) + WIDTH * whole.heads.groups;
         let bytes = columns * rows * size_of::<f32>();
         match halves {
             _ if bytes <= MOST_PART => tops.push((node, bytes)),
@@ -203,8 +203,8 @@ impl Walk<'_> {
     fn leaf(&self, node: Node, part: &Part, activations: &mut Activations) {
         let first = node.first * LEAF_BLOCKS;
         let blocks = &self.tree.blocks()[first..];
-        let order = &self.tree.order()[first * LANES..];
-        for (x, order) in blocks.iter().zip(order.chunks(LANES)).take(LEAF_BLOCKS) {
+        let order = &self.tree.order()[first * WIDTH..];
+        for (x, order) in blocks.iter().zip(order.chunks(WIDTH)).take(LEAF_BLOCKS) {
             leaf::evaluate(self.simd, part, &self.whole.heads, x, activations);
             for (lane, &index) in order.iter().enumerate() {
                 // SAFETY: the tree holds each index once, and each leaf belongs to one task.
@@ -217,7 +217,7 @@ impl Walk<'_> {
     }
 
     fn dense(&self, node: Node) {
-        let first = node.first * LEAF_BLOCKS * LANES;
+        let first = node.first * LEAF_BLOCKS * WIDTH;
         // SAFETY: the tree holds each index once, and each leaf belongs to one task.
         unsafe { dense::evaluate_places(self.network, self.tree, first, LEAF, &self.logits) }
     }

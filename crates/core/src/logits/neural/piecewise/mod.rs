@@ -20,6 +20,7 @@
 //! Bounds: intervals as in Gowal et al., "On the effectiveness of interval bound propagation", 2018; for layer 2 with the linear
 //! relaxation of ReLU of Zhang et al., "Efficient neural network robustness certification with general activation functions" (CROWN), 2018.
 
+mod bounds;
 mod columns;
 mod evaluate;
 mod leaf;
@@ -28,7 +29,3 @@ mod rows;
 mod whole;
 
 pub(super) use evaluate::logits;
-
-/// Bounds are widened by this much of the magnitudes that they were computed from. It must cover the rounding of the bounds
-/// themselves; a neuron nearer to zero than that adds but rounding on whichever side it is taken to be.
-const SLACK: f32 = 2e-6;

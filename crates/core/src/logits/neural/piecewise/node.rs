@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::columns::{sort, Columns, Sorted, Term};
 use super::rows::{bound, Rows};
-use crate::simd::{multiply_add, multiversion, Lanes, Simd, LANES};
+use crate::simd::{multiversion, Aligned, Lanes, Simd, WIDTH};
 use crate::tree::Region;
 
 /// `o = A x + c + sum_{j open} V_j relu(w_j x + b_j) + sum_{i open} U_i relu(z_i)`.
@@ -15,9 +15,9 @@ pub(super) struct Part {
     /// `z_i`.
     pub rows: Rows,
     /// `A, c`: outputs in lanes.
-    pub output: Vec<[Lanes; 4]>,
+    pub output: Vec<[Aligned; 4]>,
     /// `V_j`: for each column all outputs, in lanes. Empty while it is all zeros.
-    pub through: Vec<Lanes>,
+    pub through: Vec<Aligned>,
 }
 
 /// `U`: for each row of layer 2 what it adds to all outputs, in lanes.
@@ -25,7 +25,7 @@ pub(super) struct Heads {
     pub outputs: usize,
     /// Registers that hold all outputs.
     pub groups: usize,
-    pub weights: Vec<Lanes>,
+    pub weights: Vec<Aligned>,
 }
 
 impl Part {
@@ -37,7 +37,7 @@ impl Part {
         self.output.extend_from_slice(&parent.output);
         self.through.clear();
         let groups = self.output.len();
-        self.through.resize(self.columns.len * groups, Lanes::ZERO);
+        self.through.resize(self.columns.len * groups, Aligned::ZERO);
         if !parent.through.is_empty() {
             inherit(simd, &parent.through, sorted, &mut self.output, &mut self.through);
         }
@@ -60,44 +60,40 @@ impl Part {
 multiversion! {
     /// `V` of the open columns is kept, of those that are on it becomes part of the affine map.
     fn inherit(
-        parent: &[Lanes],
+        parent: &[Aligned],
         sorted: &Sorted,
-        output: &mut [[Lanes; 4]],
-        through: &mut [Lanes],
+        output: &mut [[Aligned; 4]],
+        through: &mut [Aligned],
     ) = inherit_body
 }
 
 #[inline(always)]
-fn inherit_body<const FMA: bool>(
-    parent: &[Lanes],
+fn inherit_body<L: Lanes>(
+    parent: &[Aligned],
     sorted: &Sorted,
-    output: &mut [[Lanes; 4]],
-    through: &mut [Lanes],
+    output: &mut [[Aligned; 4]],
+    through: &mut [Aligned],
 ) {
     let groups = output.len();
     for (through, term) in through.chunks_exact_mut(groups).zip(sorted.open()) {
         through.copy_from_slice(&parent[term.column as usize * groups..][..groups]);
     }
     for (group, output) in output.iter_mut().enumerate() {
-        let mut sum = [Lanes::ZERO; 4];
+        let mut sum = [L::splat(0.0); 4];
         for term in sorted.on() {
-            let weights = &parent[term.column as usize * groups + group];
+            let weights = L::load(&parent[term.column as usize * groups + group].0);
             for k in 0..4 {
-                for t in 0..LANES {
-                    sum[k].0[t] = multiply_add::<FMA>(weights.0[t], term.map[k], sum[k].0[t]);
-                }
+                sum[k] = weights.mul_add(L::splat(term.map[k]), sum[k]);
             }
         }
-        add(output, &sum);
+        add(output, sum);
     }
 }
 
 #[inline(always)]
-fn add(output: &mut [Lanes; 4], sum: &[Lanes; 4]) {
+fn add<L: Lanes>(output: &mut [Aligned; 4], sum: [L; 4]) {
     for k in 0..4 {
-        for t in 0..LANES {
-            output[k].0[t] += sum[k].0[t];
-        }
+        output[k] = Aligned(L::load(&output[k].0).add(sum[k]).store());
     }
 }
 
@@ -113,7 +109,7 @@ multiversion! {
 }
 
 #[inline(always)]
-fn absorb_body<const FMA: bool>(
+fn absorb_body<L: Lanes>(
     heads: &Heads,
     parent: &Rows,
     panels: Range<usize>,
@@ -121,128 +117,137 @@ fn absorb_body<const FMA: bool>(
     sorted: &Sorted,
     child: &mut Part,
 ) {
-    let columns = parent.matrix.len() / parent.affine.len().max(1);
-    let panel = |p: usize| &parent.matrix[p * columns..(p + 1) * columns];
-    let (on, open) = (sorted.on(), sorted.open());
     let mut p = panels.start;
+    // Two panels at a time, so that there are more sums than an addition takes cycles.
     while p + 1 < panels.end {
-        let matrix = [panel(p), panel(p + 1)];
-        let bounded = bound::<FMA, 2>(matrix, [parent.affine[p], parent.affine[p + 1]], on, open, region);
-        for q in 0..2 {
-            let ids = &parent.ids[LANES * (p + q)..];
-            let bounds = [&bounded.lower[q], &bounded.upper[q]];
-            keep::<FMA>(heads, matrix[q], &bounded.affine[q], bounds, ids, open, child);
-        }
+        absorb_panels::<L, 2>(heads, parent, p, region, sorted, child);
         p += 2;
     }
     if p < panels.end {
-        let matrix = panel(p);
-        let bounded = bound::<FMA, 1>([matrix], [parent.affine[p]], on, open, region);
-        let ids = &parent.ids[LANES * p..];
-        let bounds = [&bounded.lower[0], &bounded.upper[0]];
-        keep::<FMA>(heads, matrix, &bounded.affine[0], bounds, ids, open, child);
+        absorb_panels::<L, 1>(heads, parent, p, region, sorted, child);
     }
 }
 
-/// Sorts the rows of one panel by their bounds.
 #[inline(always)]
-fn keep<const FMA: bool>(
+fn absorb_panels<L: Lanes, const P: usize>(
     heads: &Heads,
-    matrix: &[Lanes],
-    affine: &[Lanes; 4],
-    bounds: [&Lanes; 2],
-    ids: &[u32],
-    open: &[Term],
+    parent: &Rows,
+    first: usize,
+    region: &Region,
+    sorted: &Sorted,
     child: &mut Part,
 ) {
-    let (mut on_lanes, mut open_lanes) = ([0u8; LANES], [0u8; LANES]);
-    let (mut on_count, mut open_count) = (0, 0);
-    // Rows that only fill up the last panel have both bounds 0, which is off.
-    for t in 0..LANES {
-        let (is_off, is_on) = (bounds[1].0[t] <= 0.0, bounds[0].0[t] >= 0.0);
-        on_lanes[on_count & 15] = t as u8;
-        on_count += usize::from(is_on & !is_off);
-        open_lanes[open_count & 15] = t as u8;
-        open_count += usize::from(!is_on & !is_off);
+    let columns = parent.matrix.len() / parent.affine.len();
+    let mut matrix = [&parent.matrix[..0]; P];
+    let mut affine = [&parent.affine[first]; P];
+    for p in 0..P {
+        matrix[p] = &parent.matrix[(first + p) * columns..(first + p + 1) * columns];
+        affine[p] = &parent.affine[first + p];
     }
-    if on_count > 0 {
-        fold::<FMA>(heads, matrix, affine, &on_lanes[..on_count], ids, open, child);
-    }
-    // The panel that is being filled, then the next one.
-    let mut lanes = &open_lanes[..open_count];
-    while !lanes.is_empty() {
-        let place = child.rows.len % LANES;
-        let (now, later) = lanes.split_at(lanes.len().min(LANES - place));
-        for &lane in now {
-            child.rows.push(affine, lane as usize, ids[lane as usize], open.len());
+    let (on, open) = (sorted.on(), sorted.open());
+    let bounded = bound::<L, P>(matrix, affine, on, open, region);
+    for p in 0..P {
+        let panel =
+            Panel { matrix: matrix[p], affine: &bounded.affine[p], ids: &parent.ids[WIDTH * (first + p)..] };
+        // Rows that only fill up the last panel have both bounds 0, which is off.
+        let (mut on_lanes, mut open_lanes) = ([0u32; WIDTH], [0u32; WIDTH]);
+        let (mut on_count, mut open_count) = (0, 0);
+        for t in 0..WIDTH {
+            let (is_off, is_on) = (bounded.upper[p][t] <= 0.0, bounded.lower[p][t] >= 0.0);
+            on_lanes[on_count % WIDTH] = t as u32;
+            on_count += usize::from(is_on & !is_off);
+            open_lanes[open_count % WIDTH] = t as u32;
+            open_count += usize::from(!is_on & !is_off);
         }
-        let first = child.rows.matrix.len() - open.len();
-        for (out, term) in child.rows.matrix[first..].iter_mut().zip(open) {
-            let weights = &matrix[term.column as usize];
-            for (out, &lane) in out.0[place..].iter_mut().zip(now) {
-                *out = weights.0[(lane & 15) as usize];
-            }
+        if on_count > 0 {
+            fold::<L>(heads, &panel, &on_lanes[..on_count], open, child);
         }
-        lanes = later;
+        if open_count > 0 {
+            keep::<L>(&panel, &open_lanes, open_count, open, &mut child.rows);
+        }
     }
 }
 
-/// Makes rows that are on part of the output.
+/// 16 rows of the parent.
+struct Panel<'a> {
+    matrix: &'a [Aligned],
+    /// With the columns that are on.
+    affine: &'a [Aligned; 4],
+    ids: &'a [u32],
+}
+
+/// Appends the rows in `count` of the panel's lanes, and of their columns the open ones.
 #[inline(always)]
-fn fold<const FMA: bool>(
-    heads: &Heads,
-    matrix: &[Lanes],
-    affine: &[Lanes; 4],
-    lanes: &[u8],
-    ids: &[u32],
-    open: &[Term],
-    child: &mut Part,
-) {
+fn keep<L: Lanes>(panel: &Panel<'_>, lanes: &[u32; WIDTH], count: usize, open: &[Term], rows: &mut Rows) {
+    let place = rows.len % WIDTH;
+    rows.ids.extend(lanes[..count].iter().map(|lane| panel.ids[*lane as usize]));
+    rows.len += count;
+    // First what fills up the last panel, then the rest in a new one.
+    let mut done = 0;
+    while done < count {
+        let at = if done == 0 { place } else { 0 };
+        if at == 0 {
+            rows.affine.push([Aligned::ZERO; 4]);
+            rows.matrix.resize(rows.matrix.len() + open.len(), Aligned::ZERO);
+        }
+        let taken = (count - done).min(WIDTH - at);
+        let mut places = [0; WIDTH];
+        let mut wanted = [0.0; WIDTH];
+        for t in 0..taken {
+            places[at + t] = lanes[done + t];
+            wanted[at + t] = 1.0;
+        }
+        let places = L::places(&places);
+        let wanted = L::splat(0.0).less(L::load(&wanted));
+        let select = |from: &Aligned, to: &mut Aligned| {
+            let chosen = L::load(&from.0).permute(places);
+            *to = Aligned(L::select(wanted, chosen, L::load(&to.0)).store());
+        };
+        let last = rows.affine.last_mut().expect("pushed before");
+        for k in 0..4 {
+            select(&panel.affine[k], &mut last[k]);
+        }
+        let first = rows.matrix.len() - open.len();
+        for (to, term) in rows.matrix[first..].iter_mut().zip(open) {
+            select(&panel.matrix[term.column as usize], to);
+        }
+        done += taken;
+    }
+}
+
+/// Makes the rows in some of the panel's lanes, which are on, part of the output.
+#[inline(always)]
+fn fold<L: Lanes>(heads: &Heads, panel: &Panel<'_>, lanes: &[u32], open: &[Term], child: &mut Part) {
     let groups = heads.groups;
+    let lane = |lane: &u32| *lane as usize % WIDTH;
     for group in 0..groups {
-        let mut weights = [Lanes::ZERO; LANES];
-        for (weights, &lane) in weights.iter_mut().zip(lanes) {
-            *weights = heads.weights[ids[lane as usize] as usize * groups + group];
-        }
-        let mut sum = [Lanes::ZERO; 4];
-        for (weights, &lane) in weights.iter().zip(lanes) {
+        let weights = |lane: usize| L::load(&heads.weights[panel.ids[lane] as usize * groups + group].0);
+        let mut sum = [L::splat(0.0); 4];
+        for lane in lanes.iter().map(lane) {
+            let weights = weights(lane);
             for k in 0..4 {
-                let factor = affine[k].0[(lane & 15) as usize];
-                for t in 0..LANES {
-                    sum[k].0[t] = multiply_add::<FMA>(factor, weights.0[t], sum[k].0[t]);
-                }
+                sum[k] = L::splat(panel.affine[k].0[lane]).mul_add(weights, sum[k]);
             }
         }
-        add(&mut child.output[group], &sum);
+        add(&mut child.output[group], sum);
 
-        let through = |j: usize| j * groups + group;
-        let mut j = 0;
-        while j + 4 <= open.len() {
-            let columns: [&Lanes; 4] = std::array::from_fn(|c| &matrix[open[j + c].column as usize]);
-            let mut sum: [Lanes; 4] = std::array::from_fn(|c| child.through[through(j + c)]);
-            for (weights, &lane) in weights.iter().zip(lanes) {
+        let mut first = 0;
+        while first < open.len() {
+            // Four columns at a time; the last ones may be done twice, but are stored once.
+            let columns = [0, 1, 2, 3].map(|c| open[(first + c).min(open.len() - 1)].column as usize);
+            let mut sum = [L::splat(0.0); 4];
+            for lane in lanes.iter().map(lane) {
+                let weights = weights(lane);
                 for c in 0..4 {
-                    let factor = columns[c].0[(lane & 15) as usize];
-                    for t in 0..LANES {
-                        sum[c].0[t] = multiply_add::<FMA>(factor, weights.0[t], sum[c].0[t]);
-                    }
+                    let factor = L::splat(panel.matrix[columns[c]].0[lane]);
+                    sum[c] = factor.mul_add(weights, sum[c]);
                 }
             }
-            for c in 0..4 {
-                child.through[through(j + c)] = sum[c];
+            for (c, sum) in sum.into_iter().enumerate().take(open.len() - first) {
+                let through = &mut child.through[(first + c) * groups + group];
+                *through = Aligned(L::load(&through.0).add(sum).store());
             }
-            j += 4;
-        }
-        for (j, term) in open.iter().enumerate().skip(j) {
-            let column = &matrix[term.column as usize];
-            let mut sum = child.through[through(j)];
-            for (weights, &lane) in weights.iter().zip(lanes) {
-                let factor = column.0[(lane & 15) as usize];
-                for t in 0..LANES {
-                    sum.0[t] = multiply_add::<FMA>(factor, weights.0[t], sum.0[t]);
-                }
-            }
-            child.through[through(j)] = sum;
+            first += 4;
         }
     }
 }

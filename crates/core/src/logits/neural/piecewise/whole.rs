@@ -5,7 +5,7 @@ use super::node::{Heads, Part};
 use super::rows::Rows;
 use crate::logits::neural::network::Network;
 use crate::parallel::for_each_block;
-use crate::simd::{Lanes, LANES};
+use crate::simd::{Aligned, WIDTH};
 
 /// Bytes of layer 2 that are laid out at a time.
 const SLAB: usize = 4 << 20;
@@ -23,21 +23,21 @@ impl Whole {
         let dim = network.dim();
         let mut columns = Columns {
             len: layer1.outputs(),
-            planes: vec![[Lanes::ZERO; 4]; layer1.outputs().div_ceil(LANES)],
+            planes: vec![[Aligned::ZERO; 4]; layer1.outputs().div_ceil(WIDTH)],
         };
         for (j, (row, b)) in layer1.weight.chunks_exact(dim).zip(&layer1.bias).enumerate() {
-            let planes = &mut columns.planes[j / LANES];
+            let planes = &mut columns.planes[j / WIDTH];
             for (plane, w) in planes.iter_mut().zip(row) {
-                plane.0[j % LANES] = *w;
+                plane.0[j % WIDTH] = *w;
             }
-            planes[3].0[j % LANES] = *b;
+            planes[3].0[j % WIDTH] = *b;
         }
         let (outputs, rows) = (layer3.outputs(), layer2.outputs());
-        let groups = outputs.div_ceil(LANES);
-        let mut output = vec![[Lanes::ZERO; 4]; groups];
-        let mut weights = vec![Lanes::ZERO; rows * groups];
+        let groups = outputs.div_ceil(WIDTH);
+        let mut output = vec![[Aligned::ZERO; 4]; groups];
+        let mut weights = vec![Aligned::ZERO; rows * groups];
         for (k, (row, b)) in layer3.weight.chunks_exact(rows).zip(&layer3.bias).enumerate() {
-            let (group, lane) = (k / LANES, k % LANES);
+            let (group, lane) = (k / WIDTH, k % WIDTH);
             output[group][3].0[lane] = *b;
             for (weights, w) in weights.chunks_exact_mut(groups).zip(row) {
                 weights[group].0[lane] = *w;
@@ -56,34 +56,34 @@ impl Whole {
     pub(super) fn pack(&self, network: &Network, first: usize, slab: &mut Rows) {
         let layer = &network.layers()[1];
         let columns = layer.inputs();
-        let most = (SLAB / size_of::<Lanes>() / columns).max(2) * LANES;
+        let most = (SLAB / size_of::<Aligned>() / columns).max(2) * WIDTH;
         let rows = (self.rows() - first).min(most);
-        let panels = rows.div_ceil(LANES);
+        let panels = rows.div_ceil(WIDTH);
         slab.len = rows;
         slab.ids = (first as u32..(first + rows) as u32).collect();
         slab.affine.clear();
-        slab.affine.resize(panels, [Lanes::ZERO; 4]);
+        slab.affine.resize(panels, [Aligned::ZERO; 4]);
         for (at, b) in layer.bias[first..first + rows].iter().enumerate() {
-            slab.affine[at / LANES][3].0[at % LANES] = *b;
+            slab.affine[at / WIDTH][3].0[at % WIDTH] = *b;
         }
-        slab.matrix.resize(panels * columns, Lanes::ZERO);
+        slab.matrix.resize(panels * columns, Aligned::ZERO);
         let weight = &layer.weight[first * columns..(first + rows) * columns];
         for_each_block(&mut slab.matrix, columns, |panel, matrix| {
-            transpose(&weight[panel * LANES * columns..], columns, matrix);
+            transpose(&weight[panel * WIDTH * columns..], columns, matrix);
         });
     }
 }
 
 /// At most 16 rows of `weight`, column by column.
-fn transpose(weight: &[f32], columns: usize, panel: &mut [Lanes]) {
-    for (chunk, panel) in panel.chunks_mut(LANES).enumerate() {
-        let mut tile = [Lanes::ZERO; LANES];
+fn transpose(weight: &[f32], columns: usize, panel: &mut [Aligned]) {
+    for (chunk, panel) in panel.chunks_mut(WIDTH).enumerate() {
+        let mut tile = [Aligned::ZERO; WIDTH];
         for (tile, row) in tile.iter_mut().zip(weight.chunks_exact(columns)) {
-            let row = &row[chunk * LANES..][..panel.len()];
+            let row = &row[chunk * WIDTH..][..panel.len()];
             tile.0[..row.len()].copy_from_slice(row);
         }
         for (j, column) in panel.iter_mut().enumerate() {
-            for t in 0..LANES {
+            for t in 0..WIDTH {
                 column.0[t] = tile[t].0[j];
             }
         }
