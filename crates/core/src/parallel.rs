@@ -14,6 +14,14 @@ use std::{
 use crate::error::Error;
 use crate::progress::{report, Progress};
 
+/// Threads that share the work.
+pub(crate) fn threads() -> usize {
+    #[cfg(feature = "threads")]
+    return rayon::current_num_threads();
+    #[cfg(not(feature = "threads"))]
+    return 1;
+}
+
 /// Calls `work(index, block)` for each block of `size` elements of `out` (the last may be shorter).
 pub(crate) fn for_each_block<T: Send>(
     out: &mut [T],
@@ -56,7 +64,7 @@ pub(crate) fn for_each_task(
     count: usize,
     span: Range<f64>,
     progress: &mut Progress<'_>,
-    work: impl Fn(usize, &dyn Fn() -> bool) + Sync,
+    work: impl Fn(usize, &(dyn Fn() -> bool + Sync)) + Sync,
 ) -> Result<(), Error> {
     let fraction = |done: usize| span.start + (span.end - span.start) * done as f64 / count as f64;
     #[cfg(feature = "threads")]
@@ -158,6 +166,18 @@ impl<'a> SharedRows<'a> {
     pub(crate) fn new(matrix: &'a mut [f32], width: usize) -> SharedRows<'a> {
         let rows = matrix.len() / width;
         SharedRows { start: matrix.as_mut_ptr(), rows, width, matrix: PhantomData }
+    }
+
+    /// Tells the processor that row `index` is going to be written, where it can be told.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, index: usize) {
+        assert!(index < self.rows);
+        #[cfg(target_arch = "x86_64")]
+        {
+            use std::arch::x86_64::{_mm_prefetch, _MM_HINT_ET0};
+            // SAFETY: a prefetch reads and writes nothing, and the row lies in the matrix.
+            unsafe { _mm_prefetch::<_MM_HINT_ET0>(self.start.add(index * self.width).cast()) }
+        }
     }
 
     /// Row `index`.

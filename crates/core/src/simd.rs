@@ -36,7 +36,7 @@ impl Simd {
     }
 
     #[cfg(target_arch = "x86_64")]
-    fn best() -> Simd {
+    pub(crate) fn best() -> Simd {
         let avx512 = is_x86_feature_detected!("avx512f")
             && is_x86_feature_detected!("avx512bw")
             && is_x86_feature_detected!("avx512dq")
@@ -51,7 +51,7 @@ impl Simd {
     }
 
     #[cfg(not(target_arch = "x86_64"))]
-    fn best() -> Simd {
+    pub(crate) fn best() -> Simd {
         Simd::Portable
     }
 }

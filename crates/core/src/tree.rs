@@ -194,7 +194,7 @@ fn middle(boxes: &[Region]) -> usize {
     boxes.len().div_ceil(2).div_ceil(2)
 }
 
-fn split_all(points: &mut [Point], boxes: &mut [Region], stop: &dyn Fn() -> bool) {
+fn split_all(points: &mut [Point], boxes: &mut [Region], stop: &(dyn Fn() -> bool + Sync)) {
     split(points, boxes);
     if boxes.len() == 1 || stop() {
         return;

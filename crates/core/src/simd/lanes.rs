@@ -14,6 +14,8 @@ impl Aligned {
 
 /// Sixteen single-precision numbers, and what kernels do with them.
 pub(crate) trait Lanes: Copy {
+    /// Values that fit into registers.
+    const REGISTERS: usize;
     /// Which lanes.
     type Mask: Copy;
     /// Sixteen numbers of lanes.
@@ -66,6 +68,7 @@ impl Portable {
 }
 
 impl Lanes for Portable {
+    const REGISTERS: usize = 4;
     type Mask = [bool; WIDTH];
     type Places = [u32; WIDTH];
 
@@ -170,6 +173,7 @@ mod x86 {
     }
 
     impl Lanes for Avx2 {
+        const REGISTERS: usize = 8;
         type Mask = (__m256, __m256);
         type Places = (__m256i, __m256i);
 
@@ -247,6 +251,7 @@ mod x86 {
     }
 
     impl Lanes for Avx512 {
+        const REGISTERS: usize = 32;
         type Mask = __mmask16;
         type Places = __m512i;
 

@@ -32,19 +32,18 @@ pub(super) fn logits(network: &Network, x: &[f64], progress: &mut Progress<'_>) 
     Ok(logits)
 }
 
-/// The logits of the tree's points in their own order, row by row: n x m.
-pub(super) fn logits_of_tree(
+/// Writes the logits of the tree's points in their own order, row by row: n x m.
+pub(super) fn write_logits(
     network: &Network,
     tree: &PointTree,
+    logits: &mut [f32],
     progress: &mut Progress<'_>,
-) -> Result<Vec<f32>, Error> {
-    let mut logits = vec![0.0; tree.len() * network.outputs()];
-    let rows = SharedRows::new(&mut logits, network.outputs());
+) -> Result<(), Error> {
+    let rows = SharedRows::new(logits, network.outputs());
     for_each_task(tree.len().div_ceil(BLOCK), 0.0..1.0, progress, |task, _| {
         // SAFETY: each task has its own places of the tree, which holds each index once.
         unsafe { evaluate_places(network, tree, task * BLOCK, BLOCK, &rows) }
-    })?;
-    Ok(logits)
+    })
 }
 
 /// Evaluates `count` points from place `first` of the tree on, or as many as there are. `first` begins a block.

@@ -1,6 +1,7 @@
 //! Layer 1 over a box: which of its neurons are surely on, surely off, or open. In layer 2 each of them is a column.
 
 use super::bounds::bounds;
+use super::rows::loads;
 use crate::simd::{multiversion, Aligned, Lanes, WIDTH};
 use crate::tree::Region;
 
@@ -58,7 +59,7 @@ fn sort_body<L: Lanes>(parent: &Columns, region: &Region, child: &mut Columns, s
     child.planes.clear();
     let [mut on, mut open] = [0, 0];
     for (chunk, planes) in parent.planes.iter().enumerate() {
-        let map = [0, 1, 2, 3].map(|k| L::load(&planes[k].0));
+        let map = loads::<L>(planes);
         let (lower, upper) = bounds(map, L::splat(0.0), region);
         // Between lower and upper relu(a) lies between slope * a and slope * a - slope * lower.
         let slope = upper.div(upper.sub(lower));

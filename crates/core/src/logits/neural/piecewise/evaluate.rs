@@ -6,10 +6,10 @@ use super::columns::{sort, Sorted};
 use super::leaf::{self, Activations};
 use super::node::Part;
 use super::rows::Rows;
-use super::whole::Whole;
+use super::whole::{Whole, PACK};
 use crate::error::Error;
 use crate::logits::neural::{dense, network::Network};
-use crate::parallel::{for_each_task, SharedRows};
+use crate::parallel::{for_each_block, for_each_task, threads, SharedRows};
 use crate::progress::Progress;
 use crate::simd::{Simd, WIDTH};
 use crate::tree::{Node, PointTree, LEAF, LEAF_BLOCKS};
@@ -18,30 +18,31 @@ use crate::tree::{Node, PointTree, LEAF, LEAF_BLOCKS};
 const DEPTH: usize = 5;
 /// Bytes of one such node; where it would be more, its halves are made instead.
 const MOST_PART: usize = 8 << 20;
-/// Bytes of all such nodes that exist at a time.
-const MOST_PARTS: usize = 24 << 20;
-/// Nodes that read a panel of layer 2 one after the other, while it is in the cache.
-const GROUP: usize = 4;
+/// Bytes of those that one task makes.
+const MOST_GROUP: usize = 8 << 20;
+/// Nodes that read rows of layer 2 one after the other, while they are in the cache.
+const GROUP: usize = 8;
 
-/// The logits of the tree's points in their own order, row by row: n x m. The network has no Fourier features.
-pub(crate) fn logits(
+/// Writes the logits of the tree's points in their own order, row by row: n x m. The network has no Fourier features.
+pub(crate) fn write_logits(
+    simd: Simd,
     network: &Network,
     tree: &PointTree,
+    logits: &mut [f32],
     progress: &mut Progress<'_>,
-) -> Result<Vec<f32>, Error> {
-    let mut logits = vec![0.0; tree.len() * network.outputs()];
-    if !tree.is_empty() {
-        let walk = Walk {
-            simd: Simd::detect(),
-            network,
-            whole: Whole::new(network),
-            tree,
-            logits: SharedRows::new(&mut logits, network.outputs()),
-            workspaces: Mutex::default(),
-        };
-        walk.all(progress)?;
+) -> Result<(), Error> {
+    if tree.is_empty() {
+        return Ok(());
     }
-    Ok(logits)
+    let walk = Walk {
+        simd,
+        network,
+        whole: Whole::new(network),
+        tree,
+        logits: SharedRows::new(logits, network.outputs()),
+        workspaces: Mutex::default(),
+    };
+    walk.all(progress)
 }
 
 struct Walk<'a> {
@@ -53,9 +54,12 @@ struct Walk<'a> {
     workspaces: Mutex<Vec<Workspace>>,
 }
 
-/// What one thread works with.
+/// What one task works with.
 #[derive(Default)]
 struct Workspace {
+    /// Nodes that are made from the whole network, and rows of it.
+    tops: Vec<Level>,
+    rows: Rows,
     /// One a level of the tree.
     levels: Vec<Level>,
     activations: Activations,
@@ -67,31 +71,28 @@ struct Level {
     sorted: Sorted,
 }
 
-/// A node that is made from the whole network.
-struct Top {
-    node: Node,
-    level: Level,
-}
-
 impl Walk<'_> {
     fn all(&self, progress: &mut Progress<'_>) -> Result<(), Error> {
         let (mut tops, mut dense) = (Vec::new(), Vec::new());
         self.find_tops(self.tree.root(), 0, &mut Level::default(), &mut tops, &mut dense);
-        let total = (tops.len() + dense.len()) as f64;
-        let mut done = 0;
+        let most = tops.len().div_ceil(2 * threads()).min(GROUP);
+        let mut groups = Vec::new();
         let mut rest = &tops[..];
         while !rest.is_empty() {
             let mut bytes = 0;
-            let fits = rest.iter().take_while(|(_, more)| {
+            let fits = rest[..most.min(rest.len())].iter().take_while(|(_, more)| {
                 bytes += more;
-                bytes <= MOST_PARTS
+                bytes <= MOST_GROUP
             });
-            let (batch, later) = rest.split_at(fits.count().max(1));
-            let span = done as f64 / total..(done + batch.len()) as f64 / total;
-            self.batch(batch, span, progress)?;
-            (rest, done) = (later, done + batch.len());
+            let (group, later) = rest.split_at(fits.count().max(1));
+            groups.push(group);
+            rest = later;
         }
-        for_each_task(dense.len(), done as f64 / total..1.0, progress, |task, _| self.dense(dense[task]))
+        let tasks = groups.len() + dense.len();
+        for_each_task(tasks, 0.0..1.0, progress, |task, stop| match groups.get(task) {
+            Some(group) => self.group(group, stop),
+            None => self.dense(dense[task - groups.len()]),
+        })
     }
 
     /// The nodes to make from the whole network, with an estimate of their bytes; and the leaves over so large a box that a
@@ -129,50 +130,41 @@ impl Walk<'_> {
         }
     }
 
-    fn batch(
-        &self,
-        nodes: &[(Node, usize)],
-        span: std::ops::Range<f64>,
-        progress: &mut Progress<'_>,
-    ) -> Result<(), Error> {
-        let whole = &self.whole;
-        let mut tops: Vec<Top> =
-            nodes.iter().map(|(node, _)| Top { node: *node, level: Level::default() }).collect();
-        let groups: Vec<_> = tops.chunks_mut(GROUP).map(Mutex::new).collect();
-        let start = span.start..span.start;
-        for_each_task(groups.len(), start.clone(), progress, |task, _| {
-            for top in groups[task].lock().expect("no task panics").iter_mut() {
-                let Level { part, sorted } = &mut top.level;
-                part.begin(self.simd, &whole.part, self.tree.region(top.node), sorted);
-            }
-        })?;
-        let mut slab = Rows::default();
-        let mut first = 0;
-        while first < whole.rows() {
-            whole.pack(self.network, first, &mut slab);
-            first += slab.len;
-            for_each_task(groups.len(), start.clone(), progress, |task, stop| {
-                let mut group = groups[task].lock().expect("no task panics");
-                let panels = slab.affine.len();
-                for panel in (0..panels).step_by(2).take_while(|_| !stop()) {
-                    for top in group.iter_mut() {
-                        let region = self.tree.region(top.node);
-                        let Level { part, sorted } = &mut top.level;
-                        let pair = panel..(panel + 2).min(panels);
-                        part.absorb(self.simd, &whole.heads, &slab, pair, region, sorted);
-                    }
-                }
-            })?;
+    /// Makes nodes from the whole network, panel after panel of it, and evaluates them.
+    fn group(&self, nodes: &[(Node, usize)], stop: &(dyn Fn() -> bool + Sync)) {
+        let mut workspace = self.workspace();
+        let Workspace { tops, rows, .. } = &mut workspace;
+        tops.resize_with(nodes.len().max(tops.len()), Level::default);
+        let region = |at: usize| self.tree.region(nodes[at].0);
+        let panels = self.whole.rows().div_ceil(WIDTH);
+        for (at, Level { part, sorted }) in tops[..nodes.len()].iter_mut().enumerate() {
+            part.begin(self.simd, &self.whole.part, region(at), sorted, panels);
         }
-        drop(groups);
-        for_each_task(tops.len(), span, progress, |task, stop| {
-            let pooled = self.workspaces.lock().expect("no task panics").pop();
-            let mut workspace = pooled.unwrap_or_default();
-            let Workspace { levels, activations } = &mut workspace;
+        for first in (0..self.whole.rows()).step_by(PACK) {
+            if stop() {
+                return;
+            }
+            self.whole.pack(self.network, first, rows);
+            for (at, Level { part, sorted }) in tops[..nodes.len()].iter_mut().enumerate() {
+                part.absorb(self.simd, &self.whole.heads, rows, region(at), sorted);
+            }
+        }
+        for_each_block(&mut tops[..nodes.len()], 1, |at, top| {
+            let mut workspace = self.workspace();
+            let Workspace { levels, activations, .. } = &mut workspace;
             levels.resize_with(usize::BITS as usize, Level::default);
-            self.descend(tops[task].node, &tops[task].level.part, levels, activations, stop);
-            self.workspaces.lock().expect("no task panics").push(workspace);
-        })
+            self.descend(nodes[at].0, &top[0].part, levels, activations, stop);
+            self.keep(workspace);
+        });
+        self.keep(workspace);
+    }
+
+    fn workspace(&self) -> Workspace {
+        self.workspaces.lock().expect("no task panics").pop().unwrap_or_default()
+    }
+
+    fn keep(&self, workspace: Workspace) {
+        self.workspaces.lock().expect("no task panics").push(workspace);
     }
 
     fn descend(
@@ -181,7 +173,7 @@ impl Walk<'_> {
         part: &Part,
         levels: &mut [Level],
         activations: &mut Activations,
-        stop: &dyn Fn() -> bool,
+        stop: &(dyn Fn() -> bool + Sync),
     ) {
         let Some(halves) = node.halves() else {
             return self.leaf(node, part, activations);
@@ -193,9 +185,8 @@ impl Walk<'_> {
             levels.split_first_mut().expect("a tree has fewer levels than a number has bits");
         for half in halves {
             let region = self.tree.region(half);
-            child.begin(self.simd, part, region, sorted);
-            let panels = 0..part.rows.affine.len();
-            child.absorb(self.simd, &self.whole.heads, &part.rows, panels, region, sorted);
+            child.begin(self.simd, part, region, sorted, part.rows.panels());
+            child.absorb(self.simd, &self.whole.heads, &part.rows, region, sorted);
             self.descend(half, child, levels, activations, stop);
         }
     }
@@ -204,6 +195,8 @@ impl Walk<'_> {
         let first = node.first * LEAF_BLOCKS;
         let blocks = &self.tree.blocks()[first..];
         let order = &self.tree.order()[first * WIDTH..];
+        // The rows are anywhere in memory: they are on their way while the first points are evaluated.
+        order.iter().take(LEAF).for_each(|index| self.logits.prefetch(*index as usize));
         for (x, order) in blocks.iter().zip(order.chunks(WIDTH)).take(LEAF_BLOCKS) {
             leaf::evaluate(self.simd, part, &self.whole.heads, x, activations);
             for (lane, &index) in order.iter().enumerate() {

@@ -28,7 +28,7 @@ multiversion! {
 #[inline(always)]
 fn evaluate_body<L: Lanes>(part: &Part, heads: &Heads, x: &[Aligned; 3], activations: &mut Activations) {
     let Activations { hidden, rows, outputs } = activations;
-    let x = [0, 1, 2].map(|k| L::load(&x[k].0));
+    let x = [L::load(&x[0].0), L::load(&x[1].0), L::load(&x[2].0)];
     let columns = part.columns.len;
     hidden.resize(columns.max(hidden.len()), Aligned::ZERO);
     let hidden = &mut hidden[..columns];
@@ -38,13 +38,12 @@ fn evaluate_body<L: Lanes>(part: &Part, heads: &Heads, x: &[Aligned; 3], activat
         }
     }
 
-    let padded = part.rows.len.next_multiple_of(ROWS);
+    let padded = part.rows.ids.len().next_multiple_of(ROWS);
     rows.resize(padded.max(rows.len()), Aligned::ZERO);
     for (index, out) in rows[..padded].chunks_exact_mut(ROWS).enumerate() {
         let (panel, place) = (index * ROWS / WIDTH, index * ROWS % WIDTH);
-        let mut sum = affines(&part.rows.affine[panel], place, x);
-        let matrix = &part.rows.matrix[panel * columns..(panel + 1) * columns];
-        for (weights, hidden) in matrix.iter().zip(&*hidden) {
+        let mut sum = affines::<L, ROWS>(&part.rows.affine[panel], place, x);
+        for (weights, hidden) in part.rows.panel(panel).iter().zip(&*hidden) {
             add(&mut sum, weights, place, hidden);
         }
         for r in 0..ROWS {
@@ -52,20 +51,48 @@ fn evaluate_body<L: Lanes>(part: &Part, heads: &Heads, x: &[Aligned; 3], activat
         }
     }
 
-    let padded = heads.outputs.next_multiple_of(ROWS);
-    outputs.resize(padded, Aligned::ZERO);
-    for (index, out) in outputs.chunks_exact_mut(ROWS).enumerate() {
-        let (group, place) = (index * ROWS / WIDTH, index * ROWS % WIDTH);
-        let mut sum = affines(&part.output[group], place, x);
-        for (weights, hidden) in part.through.chunks_exact(heads.groups).zip(&*hidden) {
+    outputs.resize(heads.outputs.next_multiple_of(WIDTH), Aligned::ZERO);
+    for (group, out) in outputs.chunks_exact_mut(WIDTH).enumerate() {
+        let sources = Sources { part, heads, group, x, hidden, rows };
+        let (mut place, end) = (0, heads.outputs - WIDTH * group);
+        while place < end.min(WIDTH) {
+            let out = &mut out[place..];
+            place += match end - place {
+                1 => sources.add_up::<1>(place, out),
+                2 => sources.add_up::<2>(place, out),
+                3 | 4 => sources.add_up::<4>(place, out),
+                _ => sources.add_up::<ROWS>(place, out),
+            };
+        }
+    }
+}
+
+/// What 16 of the outputs are made of.
+struct Sources<'a, L> {
+    part: &'a Part,
+    heads: &'a Heads,
+    group: usize,
+    x: [L; 3],
+    hidden: &'a [Aligned],
+    rows: &'a [Aligned],
+}
+
+impl<L: Lanes> Sources<'_, L> {
+    /// `R` outputs from `place` on.
+    #[inline(always)]
+    fn add_up<const R: usize>(&self, place: usize, out: &mut [Aligned]) -> usize {
+        let (part, group, groups) = (self.part, self.group, self.heads.groups);
+        let mut sum = affines::<L, R>(&part.output[group], place, self.x);
+        for (weights, hidden) in part.through.chunks_exact(groups).zip(self.hidden) {
             add(&mut sum, &weights[group], place, hidden);
         }
-        for (id, row) in part.rows.ids.iter().zip(&*rows) {
-            add(&mut sum, &heads.weights[*id as usize * heads.groups + group], place, row);
+        for (id, row) in part.rows.ids.iter().zip(self.rows) {
+            add(&mut sum, &self.heads.weights[*id as usize * groups + group], place, row);
         }
-        for r in 0..ROWS {
+        for r in 0..R {
             out[r] = Aligned(sum[r].store());
         }
+        R
     }
 }
 
@@ -79,19 +106,19 @@ fn affine<L: Lanes>(maps: &[Aligned; 4], r: usize, x: [L; 3]) -> L {
 
 /// The maps from `place` on.
 #[inline(always)]
-fn affines<L: Lanes>(maps: &[Aligned; 4], place: usize, x: [L; 3]) -> [L; ROWS] {
-    let mut values = [L::splat(0.0); ROWS];
-    for r in 0..ROWS {
+fn affines<L: Lanes, const R: usize>(maps: &[Aligned; 4], place: usize, x: [L; 3]) -> [L; R] {
+    let mut values = [L::splat(0.0); R];
+    for r in 0..R {
         values[r] = affine(maps, place + r, x);
     }
     values
 }
 
 #[inline(always)]
-fn add<L: Lanes>(sum: &mut [L; ROWS], weights: &Aligned, place: usize, input: &Aligned) {
-    let weights = &weights.0[place..place + ROWS];
+fn add<L: Lanes, const R: usize>(sum: &mut [L; R], weights: &Aligned, place: usize, input: &Aligned) {
+    let weights = &weights.0[place..place + R];
     let input = L::load(&input.0);
-    for r in 0..ROWS {
+    for r in 0..R {
         sum[r] = L::splat(weights[r]).mul_add(input, sum[r]);
     }
 }

@@ -28,4 +28,7 @@ mod node;
 mod rows;
 mod whole;
 
-pub(super) use evaluate::logits;
+pub(super) use evaluate::write_logits;
+
+#[cfg(test)]
+mod tests;

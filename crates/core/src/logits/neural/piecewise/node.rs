@@ -1,9 +1,7 @@
 //! What is left of the network over a box.
 
-use std::ops::Range;
-
 use super::columns::{sort, Columns, Sorted, Term};
-use super::rows::{bound, Rows};
+use super::rows::{bound, splats, Rows};
 use crate::simd::{multiversion, Aligned, Lanes, Simd, WIDTH};
 use crate::tree::Region;
 
@@ -29,10 +27,17 @@ pub(super) struct Heads {
 }
 
 impl Part {
-    /// Starts from what the parent left open of layer 1; its rows are then to be [absorbed](Part::absorb).
-    pub(super) fn begin(&mut self, simd: Simd, parent: &Part, region: &Region, sorted: &mut Sorted) {
+    /// Starts from what the parent left open of layer 1; its rows, of so many panels at most, are then to be [absorbed](Part::absorb).
+    pub(super) fn begin(
+        &mut self,
+        simd: Simd,
+        parent: &Part,
+        region: &Region,
+        sorted: &mut Sorted,
+        panels: usize,
+    ) {
         sort(simd, &parent.columns, region, &mut self.columns, sorted);
-        self.rows.clear();
+        self.rows.clear(self.columns.len, panels);
         self.output.clear();
         self.output.extend_from_slice(&parent.output);
         self.through.clear();
@@ -49,11 +54,10 @@ impl Part {
         simd: Simd,
         heads: &Heads,
         parent: &Rows,
-        panels: Range<usize>,
         region: &Region,
         sorted: &Sorted,
     ) {
-        absorb(simd, heads, parent, panels, region, sorted, self);
+        absorb(simd, heads, parent, region, sorted, self);
     }
 }
 
@@ -82,8 +86,9 @@ fn inherit_body<L: Lanes>(
         let mut sum = [L::splat(0.0); 4];
         for term in sorted.on() {
             let weights = L::load(&parent[term.column as usize * groups + group].0);
+            let map = splats::<L>(&term.map);
             for k in 0..4 {
-                sum[k] = weights.mul_add(L::splat(term.map[k]), sum[k]);
+                sum[k] = weights.mul_add(map[k], sum[k]);
             }
         }
         add(output, sum);
@@ -101,7 +106,6 @@ multiversion! {
     fn absorb(
         heads: &Heads,
         parent: &Rows,
-        panels: Range<usize>,
         region: &Region,
         sorted: &Sorted,
         child: &mut Part,
@@ -109,21 +113,19 @@ multiversion! {
 }
 
 #[inline(always)]
-fn absorb_body<L: Lanes>(
-    heads: &Heads,
-    parent: &Rows,
-    panels: Range<usize>,
-    region: &Region,
-    sorted: &Sorted,
-    child: &mut Part,
-) {
-    let mut p = panels.start;
-    // Two panels at a time, so that there are more sums than an addition takes cycles.
-    while p + 1 < panels.end {
+fn absorb_body<L: Lanes>(heads: &Heads, parent: &Rows, region: &Region, sorted: &Sorted, child: &mut Part) {
+    let panels = parent.panels();
+    let mut p = 0;
+    // Several panels at a time, so that there are more sums than an addition takes cycles: as many as there are registers for.
+    while L::REGISTERS >= 32 && p + 4 <= panels {
+        absorb_panels::<L, 4>(heads, parent, p, region, sorted, child);
+        p += 4;
+    }
+    while p + 2 <= panels {
         absorb_panels::<L, 2>(heads, parent, p, region, sorted, child);
         p += 2;
     }
-    if p < panels.end {
+    if p < panels {
         absorb_panels::<L, 1>(heads, parent, p, region, sorted, child);
     }
 }
@@ -137,11 +139,10 @@ fn absorb_panels<L: Lanes, const P: usize>(
     sorted: &Sorted,
     child: &mut Part,
 ) {
-    let columns = parent.matrix.len() / parent.affine.len();
-    let mut matrix = [&parent.matrix[..0]; P];
+    let mut matrix = [parent.panel(first); P];
     let mut affine = [&parent.affine[first]; P];
     for p in 0..P {
-        matrix[p] = &parent.matrix[(first + p) * columns..(first + p + 1) * columns];
+        matrix[p] = parent.panel(first + p);
         affine[p] = &parent.affine[first + p];
     }
     let (on, open) = (sorted.on(), sorted.open());
@@ -149,10 +150,9 @@ fn absorb_panels<L: Lanes, const P: usize>(
     for p in 0..P {
         let panel =
             Panel { matrix: matrix[p], affine: &bounded.affine[p], ids: &parent.ids[WIDTH * (first + p)..] };
-        // Rows that only fill up the last panel have both bounds 0, which is off.
         let (mut on_lanes, mut open_lanes) = ([0u32; WIDTH], [0u32; WIDTH]);
         let (mut on_count, mut open_count) = (0, 0);
-        for t in 0..WIDTH {
+        for t in 0..WIDTH.min(panel.ids.len()) {
             let (is_off, is_on) = (bounded.upper[p][t] <= 0.0, bounded.lower[p][t] >= 0.0);
             on_lanes[on_count % WIDTH] = t as u32;
             on_count += usize::from(is_on & !is_off);
@@ -179,75 +179,84 @@ struct Panel<'a> {
 /// Appends the rows in `count` of the panel's lanes, and of their columns the open ones.
 #[inline(always)]
 fn keep<L: Lanes>(panel: &Panel<'_>, lanes: &[u32; WIDTH], count: usize, open: &[Term], rows: &mut Rows) {
-    let place = rows.len % WIDTH;
-    rows.ids.extend(lanes[..count].iter().map(|lane| panel.ids[*lane as usize]));
-    rows.len += count;
+    let place = rows.ids.len() % WIDTH;
+    for lane in &lanes[..count] {
+        rows.ids.push(panel.ids[*lane as usize]);
+    }
     // First what fills up the last panel, then the rest in a new one.
-    let mut done = 0;
-    while done < count {
-        let at = if done == 0 { place } else { 0 };
-        if at == 0 {
-            rows.affine.push([Aligned::ZERO; 4]);
-            rows.matrix.resize(rows.matrix.len() + open.len(), Aligned::ZERO);
-        }
-        let taken = (count - done).min(WIDTH - at);
-        let mut places = [0; WIDTH];
-        let mut wanted = [0.0; WIDTH];
-        for t in 0..taken {
-            places[at + t] = lanes[done + t];
-            wanted[at + t] = 1.0;
+    let filling = if place == 0 { 0 } else { count.min(WIDTH - place) };
+    if filling > 0 {
+        let (mut places, mut wanted) = ([0; WIDTH], [0.0; WIDTH]);
+        for t in 0..filling {
+            (places[place + t], wanted[place + t]) = (lanes[t], 1.0);
         }
         let places = L::places(&places);
         let wanted = L::splat(0.0).less(L::load(&wanted));
-        let select = |from: &Aligned, to: &mut Aligned| {
-            let chosen = L::load(&from.0).permute(places);
-            *to = Aligned(L::select(wanted, chosen, L::load(&to.0)).store());
-        };
-        let last = rows.affine.last_mut().expect("pushed before");
+        let last = rows.panels() - 1;
         for k in 0..4 {
-            select(&panel.affine[k], &mut last[k]);
+            let (from, to) = (&panel.affine[k], &mut rows.affine[last][k]);
+            *to = Aligned(L::select(wanted, L::load(&from.0).permute(places), L::load(&to.0)).store());
         }
-        let first = rows.matrix.len() - open.len();
-        for (to, term) in rows.matrix[first..].iter_mut().zip(open) {
-            select(&panel.matrix[term.column as usize], to);
+        for (to, term) in rows.last_panel().iter_mut().zip(open) {
+            let from = &panel.matrix[term.column as usize];
+            *to = Aligned(L::select(wanted, L::load(&from.0).permute(places), L::load(&to.0)).store());
         }
-        done += taken;
+    }
+    if filling < count {
+        let mut places = [0; WIDTH];
+        places[..count - filling].copy_from_slice(&lanes[filling..count]);
+        let places = L::places(&places);
+        let mut affine = [Aligned::ZERO; 4];
+        for k in 0..4 {
+            affine[k] = Aligned(L::load(&panel.affine[k].0).permute(places).store());
+        }
+        rows.push(affine);
+        for (to, term) in rows.last_panel().iter_mut().zip(open) {
+            let from = &panel.matrix[term.column as usize];
+            *to = Aligned(L::load(&from.0).permute(places).store());
+        }
     }
 }
+
+/// Columns of `V` that rows are added to at a time.
+const COLUMNS: usize = 8;
 
 /// Makes the rows in some of the panel's lanes, which are on, part of the output.
 #[inline(always)]
 fn fold<L: Lanes>(heads: &Heads, panel: &Panel<'_>, lanes: &[u32], open: &[Term], child: &mut Part) {
     let groups = heads.groups;
-    let lane = |lane: &u32| *lane as usize % WIDTH;
     for group in 0..groups {
-        let weights = |lane: usize| L::load(&heads.weights[panel.ids[lane] as usize * groups + group].0);
+        let mut weights = [L::splat(0.0); WIDTH];
         let mut sum = [L::splat(0.0); 4];
-        for lane in lanes.iter().map(lane) {
-            let weights = weights(lane);
+        for (weights, &lane) in weights.iter_mut().zip(lanes) {
+            let lane = lane as usize % WIDTH;
+            *weights = L::load(&heads.weights[panel.ids[lane] as usize * groups + group].0);
             for k in 0..4 {
-                sum[k] = L::splat(panel.affine[k].0[lane]).mul_add(weights, sum[k]);
+                sum[k] = L::splat(panel.affine[k].0[lane]).mul_add(*weights, sum[k]);
             }
         }
         add(&mut child.output[group], sum);
 
         let mut first = 0;
         while first < open.len() {
-            // Four columns at a time; the last ones may be done twice, but are stored once.
-            let columns = [0, 1, 2, 3].map(|c| open[(first + c).min(open.len() - 1)].column as usize);
-            let mut sum = [L::splat(0.0); 4];
-            for lane in lanes.iter().map(lane) {
-                let weights = weights(lane);
-                for c in 0..4 {
-                    let factor = L::splat(panel.matrix[columns[c]].0[lane]);
-                    sum[c] = factor.mul_add(weights, sum[c]);
+            // Some columns at a time; the last ones may be done twice, but are stored once.
+            let mut columns = [&panel.matrix[0]; COLUMNS];
+            for (c, column) in columns.iter_mut().enumerate() {
+                *column = &panel.matrix[open[(first + c).min(open.len() - 1)].column as usize];
+            }
+            let mut sum = [L::splat(0.0); COLUMNS];
+            for (weights, &lane) in weights.iter().zip(lanes) {
+                for c in 0..COLUMNS {
+                    let factor = L::splat(columns[c].0[lane as usize % WIDTH]);
+                    sum[c] = factor.mul_add(*weights, sum[c]);
                 }
             }
-            for (c, sum) in sum.into_iter().enumerate().take(open.len() - first) {
-                let through = &mut child.through[(first + c) * groups + group];
-                *through = Aligned(L::load(&through.0).add(sum).store());
+            let through = &mut child.through;
+            for c in 0..COLUMNS.min(open.len() - first) {
+                let through = &mut through[(first + c) * groups + group];
+                *through = Aligned(L::load(&through.0).add(sum[c]).store());
             }
-            first += 4;
+            first += COLUMNS;
         }
     }
 }

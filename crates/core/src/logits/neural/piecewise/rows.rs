@@ -8,22 +8,51 @@ use crate::tree::Region;
 /// Rows of layer 2, in panels of 16.
 #[derive(Default)]
 pub(super) struct Rows {
-    /// Rows, not counting those that fill up the last panel.
-    pub len: usize,
+    /// Columns of the matrix.
+    columns: usize,
     /// For each row which one of the network's it is.
     pub ids: Vec<u32>,
     /// The affine part of each panel's rows.
     pub affine: Vec<[Aligned; 4]>,
-    /// Panel by panel, in it column by column: the weights of that column in the panel's rows.
-    pub matrix: Vec<Aligned>,
+    /// Panel by panel, in it column by column: the weights of that column in the panel's rows. It only grows; lanes beyond the
+    /// last row hold anything.
+    matrix: Vec<Aligned>,
 }
 
 impl Rows {
-    pub(super) fn clear(&mut self) {
-        self.len = 0;
+    /// No rows, of so many columns, with room for so many panels.
+    pub(super) fn clear(&mut self, columns: usize, panels: usize) {
+        self.columns = columns;
         self.ids.clear();
         self.affine.clear();
-        self.matrix.clear();
+        // Room, which costs nothing until it is used, so that nothing is ever moved.
+        self.matrix.reserve_exact((columns * panels).saturating_sub(self.matrix.len()));
+    }
+
+    pub(super) fn panels(&self) -> usize {
+        self.affine.len()
+    }
+
+    /// Appends a panel, whose weights are to be written.
+    pub(super) fn push(&mut self, affine: [Aligned; 4]) {
+        self.affine.push(affine);
+        let needed = self.panels() * self.columns;
+        if self.matrix.len() < needed {
+            self.matrix.resize(needed, Aligned::ZERO);
+        }
+    }
+
+    /// The weights of one panel.
+    #[inline(always)]
+    pub(super) fn panel(&self, panel: usize) -> &[Aligned] {
+        &self.matrix[panel * self.columns..(panel + 1) * self.columns]
+    }
+
+    /// The weights of the last panel.
+    #[inline(always)]
+    pub(super) fn last_panel(&mut self) -> &mut [Aligned] {
+        let end = self.panels() * self.columns;
+        &mut self.matrix[end - self.columns..end]
     }
 }
 
@@ -46,12 +75,10 @@ pub(super) fn bound<L: Lanes, const P: usize>(
 ) -> Bounded<P> {
     let mut maps = [[L::splat(0.0); 4]; P];
     for p in 0..P {
-        for k in 0..4 {
-            maps[p][k] = L::load(&affine[p][k].0);
-        }
+        maps[p] = loads(affine[p]);
     }
     for term in on {
-        let map = [0, 1, 2, 3].map(|k| L::splat(term.map[k]));
+        let map = splats::<L>(&term.map);
         for p in 0..P {
             let weights = L::load(&matrix[p][term.column as usize].0);
             for k in 0..4 {
@@ -68,7 +95,7 @@ pub(super) fn bound<L: Lanes, const P: usize>(
     }
     let mut spreads = [L::splat(0.0); P];
     for term in open {
-        let map = [0, 1, 2, 3].map(|k| L::splat(term.map[k]));
+        let map = splats::<L>(&term.map);
         let spread = L::splat(term.spread);
         for p in 0..P {
             let weights = L::load(&matrix[p][term.column as usize].0);
@@ -83,4 +110,16 @@ pub(super) fn bound<L: Lanes, const P: usize>(
         (result.lower[p], result.upper[p]) = (lower.store(), upper.store());
     }
     result
+}
+
+/// Four registers from memory. (An `array::map` would be a call, outside of the instruction set.)
+#[inline(always)]
+pub(super) fn loads<L: Lanes>(from: &[Aligned; 4]) -> [L; 4] {
+    [L::load(&from[0].0), L::load(&from[1].0), L::load(&from[2].0), L::load(&from[3].0)]
+}
+
+/// Four numbers, each in all lanes.
+#[inline(always)]
+pub(super) fn splats<L: Lanes>(values: &[f32; 4]) -> [L; 4] {
+    [L::splat(values[0]), L::splat(values[1]), L::splat(values[2]), L::splat(values[3])]
 }

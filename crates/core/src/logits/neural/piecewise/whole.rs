@@ -4,11 +4,10 @@ use super::columns::Columns;
 use super::node::{Heads, Part};
 use super::rows::Rows;
 use crate::logits::neural::network::Network;
-use crate::parallel::for_each_block;
 use crate::simd::{Aligned, WIDTH};
 
-/// Bytes of layer 2 that are laid out at a time.
-const SLAB: usize = 4 << 20;
+/// Rows of layer 2 that are laid out at a time: so few that they stay in the cache.
+pub(super) const PACK: usize = 4 * WIDTH;
 
 /// A network without Fourier features.
 pub(super) struct Whole {
@@ -52,25 +51,20 @@ impl Whole {
         self.heads.weights.len() / self.heads.groups
     }
 
-    /// Lays out rows of layer 2 from `first` on, as many as there are, or as a slab holds.
-    pub(super) fn pack(&self, network: &Network, first: usize, slab: &mut Rows) {
+    /// Lays out rows of layer 2 from `first` on, as many as there are, or as `rows` is to hold.
+    pub(super) fn pack(&self, network: &Network, first: usize, rows: &mut Rows) {
         let layer = &network.layers()[1];
         let columns = layer.inputs();
-        let most = (SLAB / size_of::<Aligned>() / columns).max(2) * WIDTH;
-        let rows = (self.rows() - first).min(most);
-        let panels = rows.div_ceil(WIDTH);
-        slab.len = rows;
-        slab.ids = (first as u32..(first + rows) as u32).collect();
-        slab.affine.clear();
-        slab.affine.resize(panels, [Aligned::ZERO; 4]);
-        for (at, b) in layer.bias[first..first + rows].iter().enumerate() {
-            slab.affine[at / WIDTH][3].0[at % WIDTH] = *b;
+        let last = (first + PACK).min(self.rows());
+        rows.clear(columns, PACK / WIDTH);
+        rows.ids.extend(first as u32..last as u32);
+        let weight = layer.weight[first * columns..last * columns].chunks(WIDTH * columns);
+        for (weight, bias) in weight.zip(layer.bias[first..last].chunks(WIDTH)) {
+            let mut affine = [Aligned::ZERO; 4];
+            affine[3].0[..bias.len()].copy_from_slice(bias);
+            rows.push(affine);
+            transpose(weight, columns, rows.last_panel());
         }
-        slab.matrix.resize(panels * columns, Aligned::ZERO);
-        let weight = &layer.weight[first * columns..(first + rows) * columns];
-        for_each_block(&mut slab.matrix, columns, |panel, matrix| {
-            transpose(&weight[panel * WIDTH * columns..], columns, matrix);
-        });
     }
 }
 
