@@ -105,8 +105,8 @@ impl PointTree {
             for (block, points) in blocks.iter_mut().zip(points.chunks(WIDTH)) {
                 for lane in 0..WIDTH {
                     let point = points[lane.min(points.len() - 1)];
-                    for k in 0..3 {
-                        block[k].0[lane] = point.x[k];
+                    for (coordinates, x) in block.iter_mut().zip(point.x) {
+                        coordinates.0[lane] = x;
                     }
                 }
             }

@@ -20,6 +20,9 @@
 //! Bounds: intervals as in Gowal et al., "On the effectiveness of interval bound propagation", 2018; for layer 2 with the linear
 //! relaxation of ReLU of Zhang et al., "Efficient neural network robustness certification with general activation functions" (CROWN), 2018.
 
+// Kernels walk over several arrays in step.
+#![allow(clippy::needless_range_loop)]
+
 mod bounds;
 mod columns;
 mod evaluate;
