@@ -42,7 +42,7 @@ __all__ = [
     "softmax",
 ]
 
-# Which module has which name. They are imported when first asked for, so that `neuralmls --help` need not wait for numpy.
+# Which module has which name. They are imported when first asked for: `neuralmls --help` need not wait for numpy.
 # No module may be called like a name that another one gives: importing it would hide that name.
 _HOMES = {
     "ArgumentError": "errors",

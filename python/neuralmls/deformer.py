@@ -19,9 +19,9 @@ Floats: TypeAlias = NDArray[np.floating]
 class Deformer:
     """Points `x`, bound to the logits of a weight function, deformed by moving least squares.
 
-    `y = M (x - p*) + q*`, with the weighted centroids `p* = sum w_i p_i` and `q* = sum w_i q_i`, and `M` the rotation, rotation
-    and scale, or linear map that minimises `sum w_i |M (p_i - p*) - (q_i - q*)|^2`. `M` of a rigid map is never a reflection;
-    what few or aligned control points leave open follows the motion of all of them.
+    `y = M (x - p*) + q*`, with the weighted centroids `p* = sum w_i p_i` and `q* = sum w_i q_i`, and `M` the rotation,
+    rotation and scale, or linear map that minimises `sum w_i |M (p_i - p*) - (q_i - q*)|^2`. A rigid `M` is never a
+    reflection; what few or aligned control points leave open follows the motion of all of them.
 
     Parameters
     ----------

@@ -159,14 +159,9 @@ class NeuralWeights:
             with open(path, "rb") as file, np.load(file, allow_pickle=False) as stored:
                 arrays = {name: stored[name] for name in stored.files}
             if str(arrays["format"]) != FORMAT:
-                raise FileError(
-                    f"{path}: expected a network of format '{FORMAT}', found '{arrays['format']}'"
-                )
+                raise FileError(f"{path}: expected a network of format '{FORMAT}', found '{arrays['format']}'")
             p = as_points("control_points", arrays["control_points"])
-            layers = [
-                (_single(arrays[f"weight{index}"], 2), _single(arrays[f"bias{index}"], 1))
-                for index in range(3)
-            ]
+            layers = [(_single(arrays[f"weight{index}"], 2), _single(arrays[f"bias{index}"], 1)) for index in range(3)]
             network = _core.Network(
                 p.shape[1],
                 arrays["centre"].tolist(),
@@ -175,9 +170,7 @@ class NeuralWeights:
                 layers,
             )
             if len(layers[2][1]) != len(p):
-                raise ArgumentError(
-                    f"the network has {len(layers[2][1])} outputs for {len(p)} control points"
-                )
+                raise ArgumentError(f"the network has {len(layers[2][1])} outputs for {len(p)} control points")
             return cls(p, network, arrays["losses"].tolist(), float(arrays["loss"]))
         except FileError:
             raise
