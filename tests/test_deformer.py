@@ -52,6 +52,32 @@ def test_maps_are_returned_when_asked():
     assert np.allclose(maps, np.eye(3)[[1, 2, 0]], atol=1e-6)
 
 
+def test_a_tree_of_the_points_stands_in_for_them():
+    x = RNG.uniform(-1, 1, (5000, 3))
+    p, q = RNG.uniform(-1, 1, (2, 5, 3))
+    tree = nm.PointTree(x, bounds=[[-1] * 3, [1] * 3])
+    assert len(tree) == 5000
+    neural = nm.NeuralWeights.fit(p, bounds=tree.bounds, width=64)
+    for weights in (neural, nm.InverseDistanceWeights(p)):
+        assert np.array_equal(nm.Deformer(tree, weights).deform(q), nm.Deformer(x, weights).deform(q))
+    with pytest.raises(nm.ArgumentError, match="tree"):
+        nm.NeuralWeights.fit(p, width=64).logits(tree)
+    with pytest.raises(nm.ArgumentError, match="in one place"):
+        nm.PointTree(np.zeros((4, 3)))
+
+
+def test_a_frame_is_written_where_the_caller_wants_it():
+    x, (p, q) = RNG.uniform(-1, 1, (50, 3)), RNG.uniform(-1, 1, (2, 5, 3))
+    deformer = nm.Deformer(x, nm.InverseDistanceWeights(p))
+    out = np.empty((50, 3))
+    assert deformer.deform(q, out=out) is out
+    assert np.array_equal(out, deformer.deform(q))
+    assert deformer.deform(p, out=out).tobytes() == x.tobytes()
+    for wrong in (np.empty((49, 3)), np.empty((50, 3), np.float32), np.empty((3, 50)).T, out.tolist()):
+        with pytest.raises(nm.ArgumentError, match="out: expected a writeable C-contiguous float64 array"):
+            deformer.deform(q, out=wrong)
+
+
 def test_a_point_and_no_points_are_deformed():
     p = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
     q = np.add(p, 1)

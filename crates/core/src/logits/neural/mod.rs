@@ -7,6 +7,7 @@ mod adam;
 mod dense;
 mod features;
 mod gemm;
+mod hidden;
 mod initialise;
 mod network;
 mod piecewise;
