@@ -34,4 +34,4 @@ pub use frame::Frame;
 pub use logits::inverse_distance::InverseDistance;
 pub use logits::neural::{Fit, Layer, Network, Schedule, Training};
 pub use mls::Transform;
-pub use tree::PointTree;
+pub use tree::{Order, PointTree};

@@ -11,6 +11,7 @@
 //! trees used for associative searching", 1975.
 
 use std::cmp::Ordering;
+use std::ops::Range;
 use std::sync::Mutex;
 
 use crate::error::{check_points, Error};
@@ -51,6 +52,27 @@ pub(crate) struct Node {
     index: usize,
     pub first: usize,
     pub count: usize,
+}
+
+/// In which order something of a tree's points is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// As the points were given.
+    Given,
+    /// As the points are in the tree: neighbours side by side, which is faster. [`PointTree::order`] says which is where.
+    Tree,
+}
+
+impl Order {
+    /// The rows of the points at some places of the tree, no two of which are the same.
+    #[inline(always)]
+    pub(crate) fn rows(
+        self,
+        tree: &PointTree,
+        places: Range<usize>,
+    ) -> impl Iterator<Item = usize> + Clone + '_ {
+        places.map(move |place| if self == Order::Tree { place } else { tree.order[place] as usize })
+    }
 }
 
 impl Node {
@@ -136,7 +158,7 @@ impl PointTree {
     }
 
     /// The index of each point of the tree among the points as they were given: each index once.
-    pub(crate) fn order(&self) -> &[u32] {
+    pub fn order(&self) -> &[u32] {
         &self.order
     }
 

@@ -1,6 +1,8 @@
 //! The dense pass: all neurons at every point, as products of matrices. For Fourier features, of which layer 1 is not affine in x; and
 //! for a few points.
 
+use std::ops::Range;
+
 use super::features;
 use super::gemm::{multiply, View};
 use super::network::{relu, Layer, Network};
@@ -8,7 +10,7 @@ use crate::error::Error;
 use crate::parallel::{for_each_block, for_each_task, SharedRows};
 use crate::progress::{report, Progress};
 use crate::simd::WIDTH;
-use crate::tree::PointTree;
+use crate::tree::{Order, PointTree};
 
 /// Points evaluated at once by one thread: the activations of both hidden layers stay in its cache.
 const BLOCK: usize = 128;
@@ -32,44 +34,45 @@ pub(super) fn logits(network: &Network, x: &[f64], progress: &mut Progress<'_>) 
     Ok(logits)
 }
 
-/// Writes the logits of the tree's points in their own order, row by row: n x m.
+/// Writes the logits of the tree's points row by row, n x m, in their own order or in the tree's.
 pub(super) fn write_logits(
     network: &Network,
     tree: &PointTree,
+    order: Order,
     logits: &mut [f32],
     progress: &mut Progress<'_>,
 ) -> Result<(), Error> {
     let rows = SharedRows::new(logits, network.outputs());
     for_each_task(tree.len().div_ceil(BLOCK), 0.0..1.0, progress, |task, _| {
-        // SAFETY: each task has its own places of the tree, which holds each index once.
-        unsafe { evaluate_places(network, tree, task * BLOCK, BLOCK, &rows) }
+        let places = BLOCK * task..(BLOCK * (task + 1)).min(tree.len());
+        // SAFETY: each task has its own places of the tree, no two of which have the same row.
+        unsafe { evaluate_places(network, tree, order, places, &rows) }
     })
 }
 
-/// Evaluates `count` points from place `first` of the tree on, or as many as there are. `first` begins a block.
+/// Evaluates the points at some places of the tree.
 ///
 /// # Safety
 /// Nobody else may use these points' rows meanwhile.
 pub(super) unsafe fn evaluate_places(
     network: &Network,
     tree: &PointTree,
-    first: usize,
-    count: usize,
+    order: Order,
+    places: Range<usize>,
     rows: &SharedRows<'_>,
 ) {
     let (dim, m) = (network.dim(), network.outputs());
-    let order = &tree.order()[first..(first + count).min(tree.len())];
     let mut input = Vec::new();
-    for place in first..first + order.len() {
+    for place in places.clone() {
         let block = &tree.blocks()[place / WIDTH];
         let x: [f32; 3] = std::array::from_fn(|k| block[k].0[place % WIDTH]);
         features::append(&x[..dim], network.frequencies(), &mut input);
     }
-    let mut logits = vec![0.0; order.len() * m];
+    let mut logits = vec![0.0; places.len() * m];
     evaluate(network, input, &mut logits);
-    for (logits, index) in logits.chunks_exact(m).zip(order) {
+    for (logits, row) in logits.chunks_exact(m).zip(order.rows(tree, places)) {
         // SAFETY: as the caller promises.
-        unsafe { rows.row(*index as usize) }.copy_from_slice(logits);
+        unsafe { rows.row(row) }.copy_from_slice(logits);
     }
 }
 

@@ -5,7 +5,7 @@ use crate::error::{check_points, Error};
 use crate::frame::Frame;
 use crate::progress::{report, Progress};
 use crate::simd::Simd;
-use crate::tree::{PointTree, LEAF};
+use crate::tree::{Order, PointTree, LEAF};
 
 /// One linear layer: `y = W x + b`.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,17 +118,19 @@ impl Network {
     /// network's.
     pub fn logits_of_tree(&self, tree: &PointTree, progress: &mut Progress<'_>) -> Result<Vec<f32>, Error> {
         let mut logits = vec![0.0; tree.len() * self.outputs()];
-        self.write_logits_of_tree(tree, &mut logits, progress)?;
+        self.write_logits_of_tree(tree, Order::Given, &mut logits, progress)?;
         Ok(logits)
     }
 
-    /// The same into memory that is there already, which for a million points takes less time than new memory.
+    /// The same into memory that is there already, which for a million points takes less time than new memory; in the order in which
+    /// the points were given, or that of the tree.
     ///
     /// # Errors
     /// As [`Network::logits_of_tree`], and where `logits` is not n x m.
     pub fn write_logits_of_tree(
         &self,
         tree: &PointTree,
+        order: Order,
         logits: &mut [f32],
         progress: &mut Progress<'_>,
     ) -> Result<(), Error> {
@@ -143,9 +145,9 @@ impl Network {
         }
         report(progress, 0.0)?;
         if self.frequencies.is_empty() {
-            piecewise::write_logits(Simd::detect(), self, tree, logits, progress)?;
+            piecewise::write_logits(Simd::detect(), self, tree, order, logits, progress)?;
         } else {
-            dense::write_logits(self, tree, logits, progress)?;
+            dense::write_logits(self, tree, order, logits, progress)?;
         }
         report(progress, 1.0)
     }

@@ -12,7 +12,7 @@ use crate::logits::neural::{dense, network::Network};
 use crate::parallel::{for_each_block, for_each_task, threads, SharedRows};
 use crate::progress::Progress;
 use crate::simd::{Simd, WIDTH};
-use crate::tree::{Node, PointTree, LEAF, LEAF_BLOCKS};
+use crate::tree::{Node, Order, PointTree, LEAF, LEAF_BLOCKS};
 
 /// Nodes of this depth are made from the whole network.
 const DEPTH: usize = 5;
@@ -23,11 +23,13 @@ const MOST_GROUP: usize = 8 << 20;
 /// Nodes that read rows of layer 2 one after the other, while they are in the cache.
 const GROUP: usize = 8;
 
-/// Writes the logits of the tree's points in their own order, row by row: n x m. The network has no Fourier features.
+/// Writes the logits of the tree's points row by row, n x m, in their own order or in the tree's. The network has no Fourier
+/// features.
 pub(crate) fn write_logits(
     simd: Simd,
     network: &Network,
     tree: &PointTree,
+    order: Order,
     logits: &mut [f32],
     progress: &mut Progress<'_>,
 ) -> Result<(), Error> {
@@ -39,6 +41,7 @@ pub(crate) fn write_logits(
         network,
         whole: Whole::new(network),
         tree,
+        order,
         logits: SharedRows::new(logits, network.outputs()),
         workspaces: Mutex::default(),
     };
@@ -50,6 +53,7 @@ struct Walk<'a> {
     network: &'a Network,
     whole: Whole,
     tree: &'a PointTree,
+    order: Order,
     logits: SharedRows<'a>,
     workspaces: Mutex<Vec<Workspace>>,
 }
@@ -192,16 +196,17 @@ impl Walk<'_> {
     }
 
     fn leaf(&self, node: Node, part: &Part, activations: &mut Activations) {
-        let first = node.first * LEAF_BLOCKS;
-        let blocks = &self.tree.blocks()[first..];
-        let order = &self.tree.order()[first * WIDTH..];
-        // The rows are anywhere in memory: they are on their way while the first points are evaluated.
-        order.iter().take(LEAF).for_each(|index| self.logits.prefetch(*index as usize));
-        for (x, order) in blocks.iter().zip(order.chunks(WIDTH)).take(LEAF_BLOCKS) {
+        let first = node.first * LEAF;
+        let rows = self.order.rows(self.tree, first..(first + LEAF).min(self.tree.len()));
+        // They may be anywhere in memory: they are on their way while the first points are evaluated.
+        rows.clone().for_each(|row| self.logits.prefetch(row));
+        let blocks = &self.tree.blocks()[node.first * LEAF_BLOCKS..];
+        let mut rows = rows;
+        for x in blocks.iter().take(LEAF_BLOCKS) {
             leaf::evaluate(self.simd, part, &self.whole.heads, x, activations);
-            for (lane, &index) in order.iter().enumerate() {
-                // SAFETY: the tree holds each index once, and each leaf belongs to one task.
-                let row = unsafe { self.logits.row(index as usize) };
+            for (lane, row) in rows.by_ref().take(WIDTH).enumerate() {
+                // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
+                let row = unsafe { self.logits.row(row) };
                 for (logit, output) in row.iter_mut().zip(&activations.outputs) {
                     *logit = output.0[lane];
                 }
@@ -210,8 +215,9 @@ impl Walk<'_> {
     }
 
     fn dense(&self, node: Node) {
-        let first = node.first * LEAF_BLOCKS * WIDTH;
-        // SAFETY: the tree holds each index once, and each leaf belongs to one task.
-        unsafe { dense::evaluate_places(self.network, self.tree, first, LEAF, &self.logits) }
+        let first = node.first * LEAF;
+        let places = first..(first + LEAF).min(self.tree.len());
+        // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
+        unsafe { dense::evaluate_places(self.network, self.tree, self.order, places, &self.logits) }
     }
 }

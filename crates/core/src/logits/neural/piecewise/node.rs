@@ -80,7 +80,10 @@ fn inherit_body<L: Lanes>(
 ) {
     let groups = output.len();
     for (through, term) in through.chunks_exact_mut(groups).zip(sorted.open()) {
-        through.copy_from_slice(&parent[term.column as usize * groups..][..groups]);
+        let from = &parent[term.column as usize * groups..][..groups];
+        for (to, from) in through.iter_mut().zip(from) {
+            *to = Aligned(L::load(&from.0).store());
+        }
     }
     for (group, output) in output.iter_mut().enumerate() {
         let mut sum = [L::splat(0.0); 4];

@@ -6,7 +6,7 @@ use crate::logits::neural::initialise::Random;
 use crate::logits::neural::network::tests::naive;
 use crate::logits::neural::{fit, Network, Schedule, Training};
 use crate::simd::Simd;
-use crate::tree::PointTree;
+use crate::tree::{Order, PointTree};
 
 fn untrained(dim: usize, width: usize, m: usize) -> Network {
     let mut random = Random::new(11);
@@ -33,7 +33,7 @@ fn tree(network: &Network, x: &[f64]) -> PointTree {
 fn logits_on(simd: Simd, network: &Network, x: &[f64]) -> Vec<f32> {
     let tree = tree(network, x);
     let mut logits = vec![f32::NAN; tree.len() * network.outputs()];
-    super::write_logits(simd, network, &tree, &mut logits, &mut |_| true).unwrap();
+    super::write_logits(simd, network, &tree, Order::Given, &mut logits, &mut |_| true).unwrap();
     logits
 }
 
@@ -164,6 +164,18 @@ fn gives_the_same_bits_for_any_number_of_threads() {
 }
 
 #[test]
+fn logits_in_the_order_of_the_tree_are_the_same_ones() {
+    let network = trained(3, 300, 6);
+    let tree = tree(&network, &uniform(3000, 3, 1));
+    let given = network.logits_of_tree(&tree, &mut |_| true).unwrap();
+    let mut ordered = vec![f32::NAN; 3000 * 6];
+    network.write_logits_of_tree(&tree, Order::Tree, &mut ordered, &mut |_| true).unwrap();
+    for (row, index) in ordered.chunks(6).zip(tree.order()) {
+        assert_eq!(row, &given[6 * *index as usize..][..6]);
+    }
+}
+
+#[test]
 fn permuted_points_have_permuted_logits() {
     let network = trained(3, 300, 6);
     let x = uniform(3000, 3, 1);
@@ -214,6 +226,8 @@ fn refuses_a_tree_in_another_frame_and_memory_of_another_size() {
     let other = PointTree::new(&x, 3, Frame::IDENTITY, &mut |_| true).unwrap();
     let error = network.logits_of_tree(&other, &mut |_| true).unwrap_err();
     assert!(error.to_string().contains("frame"), "{error}");
-    let error = network.write_logits_of_tree(&tree(&network, &x), &mut [0.0; 19], &mut |_| true).unwrap_err();
+    let error = network
+        .write_logits_of_tree(&tree(&network, &x), Order::Given, &mut [0.0; 19], &mut |_| true)
+        .unwrap_err();
     assert!(error.to_string().contains("10 x 2"), "{error}");
 }
