@@ -15,6 +15,7 @@ pub(crate) use lanes::{Avx2, Avx512};
 /// An instruction set that kernels are compiled for. Its values come from [`Simd::detect`] alone, which is what makes
 /// [`multiversion!`] sound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(not(target_arch = "x86_64"), allow(dead_code))] // The others are made nowhere else.
 pub(crate) enum Simd {
     /// What every machine of the target has.
     Portable,
@@ -105,7 +106,6 @@ mod tests {
             x.div(y),
             x.mul_add(y, L::splat(0.5)),
             x.max(y),
-            x.min(y),
             x.mul(x).sqrt(),
             x.abs(),
             L::select(x.less(y), x, y),
@@ -125,14 +125,13 @@ mod tests {
     fn every_instruction_set_of_this_machine_gives_the_same_answers() {
         let a = std::array::from_fn(|i| (i as f32 * 0.7).sin());
         let b = std::array::from_fn(|i| (i as f32 * 1.3).cos() + 2.0);
-        let operations: [fn(f32, f32) -> f32; 10] = [
+        let operations: [fn(f32, f32) -> f32; 9] = [
             |a, b| a + b,
             |a, b| a - b,
             |a, b| a * b,
             |a, b| a / b,
             |a, b| a * b + 0.5,
             f32::max,
-            f32::min,
             |a, _| a.abs(),
             |a, _| a.abs(),
             |a, b| if a < b { a } else { b },
@@ -147,7 +146,7 @@ mod tests {
             }
             let places = std::array::from_fn(|i| ((5 * i + 3) % WIDTH) as u32);
             assert_eq!(permuted(simd, &a, &places), places.map(|i| a[i as usize]), "{simd:?}");
-            assert!((results[10][0] - a.iter().sum::<f32>()).abs() < 1e-5, "{simd:?}");
+            assert!((results[9][0] - a.iter().sum::<f32>()).abs() < 1e-5, "{simd:?}");
         }
     }
 }

@@ -31,7 +31,6 @@ pub(crate) trait Lanes: Copy {
     /// `self * b + c`, rounded once where the instruction set can.
     fn mul_add(self, b: Self, c: Self) -> Self;
     fn max(self, other: Self) -> Self;
-    fn min(self, other: Self) -> Self;
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;
     /// `places`, each below 16, as [`permute`](Lanes::permute) wants them.
@@ -109,10 +108,6 @@ impl Lanes for Portable {
         self.zip(other, |a, b| if a > b { a } else { b })
     }
     #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a < b { a } else { b })
-    }
-    #[inline(always)]
     fn sqrt(self) -> Self {
         Portable(self.0.map(f32::sqrt))
     }
@@ -184,7 +179,6 @@ mod x86 {
             div(other) = _mm256_div_ps;
             mul_add(b, c) = _mm256_fmadd_ps;
             max(other) = _mm256_max_ps;
-            min(other) = _mm256_min_ps;
             sqrt() = _mm256_sqrt_ps;
         }
         #[inline(always)]
@@ -262,7 +256,6 @@ mod x86 {
             div(other) = _mm512_div_ps;
             mul_add(b, c) = _mm512_fmadd_ps;
             max(other) = _mm512_max_ps;
-            min(other) = _mm512_min_ps;
             sqrt() = _mm512_sqrt_ps;
         }
         #[inline(always)]

@@ -16,7 +16,7 @@ use crate::tree::{Node, Order, PointTree, LEAF, LEAF_BLOCKS};
 
 /// Nodes of this depth are made from the whole network.
 const DEPTH: usize = 5;
-/// Bytes of one such node; where it would be more, its halves are made instead.
+/// Bytes of one such node at most; where it might be more, its halves are made instead.
 const MOST_PART: usize = 8 << 20;
 /// Bytes of those that one task makes.
 const MOST_GROUP: usize = 8 << 20;
@@ -122,8 +122,8 @@ impl Walk<'_> {
             &mut level.sorted,
         );
         let columns = level.part.columns.len;
-        // As many rows are usually open as columns.
-        let rows = (2 * columns + WIDTH).min(whole.rows()) + WIDTH * whole.heads.groups;
+        // In the worst case all rows stay open.
+        let rows = whole.rows() + WIDTH * whole.heads.groups;
         let bytes = columns * rows * size_of::<f32>();
         match halves {
             _ if bytes <= MOST_PART => tops.push((node, bytes)),
