@@ -25,7 +25,9 @@ impl ShapeFile {
                 .and_then(|b| b.extract())
                 .map_err(|error| error.value(side_file.py()).to_string())
         };
-        Shape::open(data.to_vec(), Some(extension), &side_files).map(ShapeFile).map_err(|error| from_shapes(&error))
+        Shape::open(data.to_vec(), Some(extension), &side_files)
+            .map(ShapeFile)
+            .map_err(|error| from_shapes(&error))
     }
 
     /// The format's name: "OBJ", "PLY" ...
