@@ -1,22 +1,25 @@
 //! The weights of all points at one temperature, in the layout that the kernels of [`crate::mls`] read.
 //!
-//! Points go in blocks of 16 lanes (the last one is filled up with lanes whose weights are 0). A block is m + 2 rows of 16:
+//! Points go in blocks of 16 lanes (the last one is filled up with lanes whose weights are 0). A block is m + 3 rows of 16:
 //!
 //! ```text
 //! row i < m    w_i / w_second of each lane's point; 0 for its dominant control point
-//! row m        w_second
-//! row m + 1    the index of the dominant control point: the bits of the number are it
+//! row m        w_second, in two parts that together have twice the digits
+//! row m + 1    the second part
+//! row m + 2    the index of the dominant control point: the bits of the number are it
 //! ```
 //!
-//! These are the numbers of [`super::relative_weights`] in single precision. They lose nothing that matters: an error of
-//! 6e-8 *of each weight* moves a point by as little, however small the weight, whereas one of 6e-8 of their sum would not.
+//! These are the numbers of [`super::relative_weights`], rounded so that nothing is lost that matters: each weight is single, which is
+//! as if it had been 6e-8 of itself more or less, and w_second makes the sum of the rounded ones 1 exactly, in double
+//! precision. (A single w_second would put the error of the sum of a thousand weights on one of them.)
 
-use super::relative_weights;
 use crate::parallel::for_each_block;
 use crate::simd::{multiply_add, multiversion, Simd};
 
 /// Points in a block.
 pub(crate) const LANES: usize = 16;
+/// Rows of a block after the weights.
+const MORE: usize = 3;
 /// Blocks that one thread packs at a time.
 const BLOCKS: usize = 64;
 
@@ -36,7 +39,7 @@ impl PackedWeights {
     /// Packs `logits` (n x m), in the memory of `old` where there is one.
     pub(crate) fn new(logits: &[f32], m: usize, temperature: f64, old: Option<PackedWeights>) -> Self {
         debug_assert!(m > 0 && u32::try_from(m).is_ok() && logits.len() % m == 0);
-        let size = m + 2;
+        let size = m + MORE;
         let mut rows = old.map(|old| old.rows).unwrap_or_default();
         rows.resize((logits.len() / m).div_ceil(LANES) * size, Row([0.0; LANES]));
         let simd = Simd::detect();
@@ -46,7 +49,10 @@ impl PackedWeights {
                 if logits.len() == LANES * m {
                     pack(simd, logits, temperature, rows);
                 } else {
-                    pack_rest(logits, temperature, rows);
+                    let mut filled = logits.to_vec();
+                    filled.resize(LANES * m, 0.0);
+                    pack(simd, &filled, temperature, rows);
+                    clear(rows, logits.len() / m);
                 }
             }
         });
@@ -61,22 +67,14 @@ impl PackedWeights {
     /// The blocks from the one of the point `first`, a multiple of 16, on.
     pub(crate) fn blocks(&self, first: usize) -> impl Iterator<Item = &[Row]> {
         debug_assert!(first % LANES == 0);
-        self.rows[first / LANES * (self.m + 2)..].chunks_exact(self.m + 2)
+        self.rows[first / LANES * (self.m + MORE)..].chunks_exact(self.m + MORE)
     }
 }
 
-/// The last points, fewer than a block.
-fn pack_rest(logits: &[f32], temperature: f64, rows: &mut [Row]) {
-    let m = rows.len() - 2;
-    rows.fill(Row([0.0; LANES]));
-    let mut relative = vec![0.0; m];
-    for (lane, logits) in logits.chunks_exact(m).enumerate() {
-        let dominant = relative_weights(logits, temperature, &mut relative);
-        for (row, r) in rows.iter_mut().zip(&relative) {
-            row.0[lane] = *r as f32;
-        }
-        rows[m].0[lane] = dominant.second as f32;
-        rows[m + 1].0[lane] = f32::from_bits(dominant.index as u32);
+/// Takes all weight from the lanes from `first` on.
+fn clear(rows: &mut [Row], first: usize) {
+    for row in rows {
+        row.0[first..].fill(0.0);
     }
 }
 
@@ -87,7 +85,7 @@ multiversion! {
 
 #[inline(always)]
 fn pack_body<const FMA: bool>(logits: &[f32], temperature: f64, rows: &mut [Row]) {
-    let m = rows.len() - 2;
+    let m = rows.len() - MORE;
     let scale = std::f64::consts::LOG2_E / temperature;
     let (weights, rest) = rows.split_at_mut(m);
     let (mut first, mut second, mut index) =
@@ -106,7 +104,7 @@ fn pack_body<const FMA: bool>(logits: &[f32], temperature: f64, rows: &mut [Row]
             index[lane] = if above { at } else { index[lane] };
         }
     }
-    let mut sum = [0.0f32; LANES];
+    let mut sum = [0.0; LANES];
     for (i, row) in weights.iter_mut().enumerate() {
         let at = i as u32;
         for lane in 0..LANES {
@@ -115,15 +113,17 @@ fn pack_body<const FMA: bool>(logits: &[f32], temperature: f64, rows: &mut [Row]
             let r = if l == second[lane] { 1.0 } else { r };
             let r = if at == index[lane] { 0.0 } else { r };
             row.0[lane] = r;
-            sum[lane] += r;
+            sum[lane] += f64::from(r);
         }
     }
     for lane in 0..LANES {
         let ratio = exponential::<FMA>(second[lane], first[lane], scale);
         let ratio = if second[lane] == first[lane] { 1.0 } else { ratio };
-        let ratio = if m == 1 { 0.0 } else { ratio };
-        rest[0].0[lane] = ratio / (1.0 + ratio * sum[lane]);
-        rest[1].0[lane] = f32::from_bits(index[lane]);
+        let ratio = f64::from(if m == 1 { 0.0 } else { ratio });
+        let share = ratio / (1.0 + ratio * sum[lane]);
+        rest[0].0[lane] = share as f32;
+        rest[1].0[lane] = (share - f64::from(share as f32)) as f32;
+        rest[2].0[lane] = f32::from_bits(index[lane]);
     }
 }
 

@@ -30,6 +30,9 @@ pub(super) fn scale<const FMA: bool>(
     }
 }
 
+/// Below this, the control points lie so flat that rounding shows in the map (by 1e-16 over it); the twin's does as well, but differently.
+const FLAT: f64 = 1e-10;
+
 /// `M - I = G - I + E^T (P / |P| + ridge)^-1 / |P|`, E the moments of the residuals of G; by P = L D L^T.
 #[inline(always)]
 pub(super) fn affine<const FMA: bool>(
@@ -59,7 +62,7 @@ pub(super) fn affine<const FMA: bool>(
         let l21 = p21 * i1;
         let d2 = zz * inverse + RIDGE - l20 * p20 - l21 * p21;
         let i2 = 1.0 / d2;
-        let known = square > 1e-60 && square < 1e60 && d0 > 0.0 && d1 > 0.0 && d2 > 0.0;
+        let known = square > 1e-60 && square < 1e60 && d1 > FLAT && d2 > FLAT;
         for r in 0..3 {
             let b0 = residual[r][lane] * inverse;
             let b1 = residual[3 + r][lane] * inverse - l10 * b0;

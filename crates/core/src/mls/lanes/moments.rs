@@ -74,7 +74,7 @@ fn moments<const FMA: bool, const EXTENT: usize>(
     let (weights, rest) = rows.split_at(points.len());
     let mut own = [[0.0; LANES]; 6];
     for lane in 0..LANES {
-        let point = &points[rest[1].0[lane].to_bits() as usize];
+        let point = &points[rest[2].0[lane].to_bits() as usize];
         for c in 0..6 {
             own[c][lane] = point[c];
         }
@@ -97,7 +97,7 @@ fn moments<const FMA: bool, const EXTENT: usize>(
     let mean = if EXTENT == 6 { &sums.residual } else { &sums.b };
     let (mut p_mean, mut shift) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
     for lane in 0..LANES {
-        let second = f64::from(rest[0].0[lane]);
+        let second = f64::from(rest[0].0[lane]) + f64::from(rest[1].0[lane]);
         for c in 0..3 {
             let share = second * sums.a[c][lane];
             for d in 0..3 {

@@ -24,7 +24,7 @@ const STEPS: usize = 3;
 /// A lane that needs more looks than this has two roots so close that rounding hides which is which.
 const MOST_LOOKS: usize = 8;
 /// How much the slope may cancel.
-const MIRRORED: f64 = 4.0;
+const MIRRORED: f64 = 32.0;
 /// Rounding of the quartic's coefficients, relative to the length of K; and of the adjugate.
 const ROUNDING: f64 = 2e-15;
 

@@ -14,7 +14,7 @@ type Points = Vec<[f64; 3]>;
 /// The worst differences of the sound lanes, and how many are not.
 #[derive(Clone, Copy, Debug, Default)]
 struct Worst {
-    /// Of positions.
+    /// Of positions, over the size of the map where that is above 1.
     position: f64,
     /// Of the entries of rotations whose gap `(s2 + s3) / s1` is above 1e-3.
     turn: f64,
@@ -64,7 +64,8 @@ fn compare(
                 }
                 let (twin, gap) = &twins[i];
                 for c in 0..3 {
-                    let difference = (y[3 * i + c] - (x[i][c] + twin.displacement[c])).abs();
+                    let size = matrix::norm(&twin.map).max(1.0);
+                    let difference = (y[3 * i + c] - (x[i][c] + twin.displacement[c])).abs() / size;
                     assert!(difference.is_finite(), "{:?}", &y[3 * i..3 * i + 3]);
                     worst.position = worst.position.max(difference);
                 }

@@ -1,13 +1,14 @@
 //! Against the double-precision weights, on every instruction set of this machine.
 
 use super::*;
-use crate::softmax::Dominant;
+use crate::softmax::{relative_weights, Dominant};
 use proptest::prelude::*;
 
-fn unpacked(rows: &[Row], lane: usize) -> (Vec<f32>, f32, usize) {
-    let m = rows.len() - 2;
-    let relative = rows[..m].iter().map(|row| row.0[lane]).collect();
-    (relative, rows[m].0[lane], rows[m + 1].0[lane].to_bits() as usize)
+fn unpacked(rows: &[Row], lane: usize) -> (Vec<f64>, f64, usize) {
+    let m = rows.len() - MORE;
+    let relative = rows[..m].iter().map(|row| f64::from(row.0[lane])).collect();
+    let second = f64::from(rows[m].0[lane]) + f64::from(rows[m + 1].0[lane]);
+    (relative, second, rows[m + 2].0[lane].to_bits() as usize)
 }
 
 /// Every lane of `rows` against [`relative_weights`], to `tolerance` of each weight.
@@ -20,14 +21,14 @@ fn check(logits: &[f32], m: usize, temperature: f64, tolerance: f64, rows: &[Row
         let pairs = relative.iter().zip(&expected).chain([(&packed_second, &second)]);
         for (a, b) in pairs {
             // Below 2^-126 single precision has nothing to give.
-            assert!((f64::from(*a) - b).abs() <= tolerance * b + 2e-38, "{a} {b} at T = {temperature}");
+            assert!((a - b).abs() <= tolerance * b + 2e-38, "{a} {b} at T = {temperature}");
         }
     }
 }
 
 fn check_all(logits: &[f32], m: usize, temperature: f64) {
     for simd in Simd::all() {
-        let mut rows = vec![Row([f32::NAN; LANES]); m + 2];
+        let mut rows = vec![Row([f32::NAN; LANES]); m + MORE];
         pack(simd, logits, temperature, &mut rows);
         check(logits, m, temperature, 4e-7, &rows);
     }
