@@ -65,7 +65,7 @@ impl PackedWeights {
     }
 
     /// The blocks from the one of the point `first`, a multiple of 16, on.
-    pub(crate) fn blocks(&self, first: usize) -> impl Iterator<Item = &[Row]> {
+    pub(crate) fn blocks(&self, first: usize) -> impl Iterator<Item = &[Row]> + Clone {
         debug_assert!(first % LANES == 0);
         self.rows[first / LANES * (self.m + MORE)..].chunks_exact(self.m + MORE)
     }

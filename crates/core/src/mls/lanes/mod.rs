@@ -23,7 +23,7 @@ mod rotation;
 use super::matrix::{identity, Matrix};
 use super::{Anchor, Transform, ANCHOR_WEIGHT};
 use crate::frame::Frame;
-use crate::simd::{multiply_add_f64, multiversion, Simd};
+use crate::simd::{multiply_add, multiply_add_f64, multiversion, Simd};
 use crate::softmax::{Row, LANES};
 
 /// Points in a batch: enough of them to hide the latency of divisions, few enough to stay in the first cache.
@@ -54,6 +54,8 @@ pub(crate) struct BatchPoints<'a> {
 
 /// The intermediate results of a batch, to be used for one after another.
 pub(crate) struct Scratch {
+    /// `p_k`, `q_k` of the dominant control point.
+    own: [Lane; 6],
     /// `C / w_2`, row-major; for affine maps of the residuals.
     moment: [Lane; 9],
     /// The moments of p with itself: xx, xy, xz, yy, yz, zz (affine), or their trace alone (similarity).
@@ -73,7 +75,16 @@ impl Scratch {
         const ZERO: Lane = [0.0; BATCH];
         let turn = rotation::Turn { a: [ZERO; 9], d: ZERO, k: ZERO, v: ZERO, slope: ZERO };
         let (moment, extent, change) = ([ZERO; 9], [ZERO; 6], [ZERO; 9]);
-        Scratch { moment, extent, p_mean: [ZERO; 3], shift: [ZERO; 3], turn, change, sound: ZERO }
+        Scratch {
+            own: [ZERO; 6],
+            moment,
+            extent,
+            p_mean: [ZERO; 3],
+            shift: [ZERO; 3],
+            turn,
+            change,
+            sound: ZERO,
+        }
     }
 
     /// Of the first `n` lanes those whose result is not sound.
@@ -90,7 +101,7 @@ impl LaneHandles {
     /// Deforms at most 64 points, whose weights are in `blocks`; [`Scratch::unsound`] then has the lanes to do again.
     pub(crate) fn deform<'a>(
         &self,
-        blocks: impl Iterator<Item = &'a [Row]>,
+        blocks: impl Iterator<Item = &'a [Row]> + Clone,
         points: BatchPoints<'_>,
         scratch: &mut Scratch,
     ) {
@@ -99,7 +110,11 @@ impl LaneHandles {
         assert!(
             n <= BATCH && x.len() == 3 * n && y.len() == 3 * n && (maps.is_empty() || maps.len() == 9 * n)
         );
-        for (block, rows) in blocks.take(n.div_ceil(LANES)).enumerate() {
+        let blocks = blocks.take(n.div_ceil(LANES)).enumerate();
+        for (block, rows) in blocks.clone() {
+            moments::look_up(rows, &self.points, block, scratch);
+        }
+        for (block, rows) in blocks {
             let linear = &self.anchor.linear;
             match self.transform {
                 Transform::Rigid => moments::rigid(self.simd, rows, &self.points, block, scratch),

@@ -73,11 +73,8 @@ fn moments<const FMA: bool, const EXTENT: usize>(
 ) {
     let (weights, rest) = rows.split_at(points.len());
     let mut own = [[0.0; LANES]; 6];
-    for lane in 0..LANES {
-        let point = &points[rest[2].0[lane].to_bits() as usize];
-        for c in 0..6 {
-            own[c][lane] = point[c];
-        }
+    for (own, all) in own.iter_mut().zip(&scratch.own) {
+        own.copy_from_slice(&all[first..first + LANES]);
     }
     let mut sums = Accumulator {
         a: [[0.0; LANES]; 3],
@@ -121,6 +118,18 @@ fn moments<const FMA: bool, const EXTENT: usize>(
     store(&sums.extent, first, &mut scratch.extent);
     store(&p_mean, first, &mut scratch.p_mean);
     store(&shift, first, &mut scratch.shift);
+}
+
+/// Looks up the dominant control points of a block's lanes. For all blocks of a batch before the sums of any: what is written number by
+/// number cannot be read as a vector at once.
+pub(super) fn look_up(rows: &[Row], points: &[[f64; 6]], block: usize, scratch: &mut Scratch) {
+    let dominant = rows[points.len() + 2].0;
+    for (lane, index) in dominant.into_iter().enumerate() {
+        let point = &points[index.to_bits() as usize];
+        for (own, coordinate) in scratch.own.iter_mut().zip(point) {
+            own[block * LANES + lane] = *coordinate;
+        }
+    }
 }
 
 #[inline(always)]

@@ -15,10 +15,10 @@
 //! error of v is that of A's entries. The quartic has four real roots, so that Newton's steps from above never pass the largest.
 
 use super::super::matrix::Matrix;
-use super::{multiply_add_f64, Lane, ANCHOR_WEIGHT, BATCH};
+use super::{multiply_add, multiply_add_f64, Lane, ANCHOR_WEIGHT, BATCH};
 
 /// Newton's steps before the first look at whether all lanes are done: enough for nearly all of them.
-const FIRST_STEPS: usize = 6;
+const FIRST_STEPS: usize = 4;
 /// Steps between two looks.
 const STEPS: usize = 3;
 /// A lane that needs more looks than this has two roots so close that rounding hides which is which.
@@ -99,7 +99,8 @@ fn cofactors<const FMA: bool>(a: &[f64; 9]) -> [f64; 9] {
     ]
 }
 
-/// d, k and a bound of v: `s1 s2 + s1 s3 + s2 s3 <= sqrt(3 k)`.
+/// d, k and a bound of v that is v itself where s3 is 0 or s1: with `b = s1 s2 + s1 s3 + s2 s3`, `b^2 = k + 2 d (1 + v)`, and
+/// `v <= sqrt(3) - 1`; then `v = sqrt(1 + 2 b) - 1`.
 #[inline(always)]
 fn coefficients<const FMA: bool>(a: &[Lane; 9], d: &mut Lane, k: &mut Lane, v: &mut Lane) {
     for lane in 0..BATCH {
@@ -116,7 +117,10 @@ fn coefficients<const FMA: bool>(a: &[Lane; 9], d: &mut Lane, k: &mut Lane, v: &
         }
         d[lane] = determinant;
         k[lane] = square;
-        v[lane] = f64::from((3.000_01 * square as f32).sqrt());
+        // In single precision, and a little more than that.
+        let positive = if determinant > 0.0 { determinant } else { 0.0 };
+        let b = 1.000_001 * multiply_add::<FMA>(3.464_102, positive as f32, square as f32).sqrt();
+        v[lane] = f64::from(2.0 * b / (1.0 + (1.0 + 2.0 * b).sqrt()));
     }
 }
 
@@ -145,8 +149,8 @@ fn descend<const FMA: bool, const N: usize>(d: &Lane, k: &Lane, v: &mut Lane, sl
         }
         v[lane] = root;
         slope[lane] = derivative;
-        // What a step leaves is of the order of its square over the slope.
-        open[lane] = if step.abs() <= 1e-6 * derivative { 0.0 } else { 1.0 };
+        // What a step leaves is of the order of its square over the slope; the polish squares its ratio to the gap again.
+        open[lane] = if step.abs() <= 1e-5 * derivative { 0.0 } else { 1.0 };
     }
     open.iter().sum()
 }
