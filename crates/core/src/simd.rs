@@ -4,6 +4,8 @@
 //! multiply-add is one instruction. [`multiversion!`] compiles it once for each instruction set; the compiler turns the
 //! arrays into registers. No intrinsics, and the only `unsafe` is the call of a function whose instructions were detected.
 
+pub(crate) mod loops;
+
 /// An instruction set that kernels are compiled for. Its values come from [`Simd::detect`] alone, which is what makes [`multiversion!`]
 /// sound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,12 +29,6 @@ impl Simd {
             _ => best,
         };
         named.min(best)
-    }
-
-    /// All that this machine has, for tests.
-    #[cfg(test)]
-    pub(crate) fn all() -> impl Iterator<Item = Simd> {
-        [Simd::Portable, Simd::Avx2, Simd::Avx512].into_iter().filter(|simd| *simd <= Simd::best())
     }
 
     #[cfg(target_arch = "x86_64")]
@@ -67,22 +63,12 @@ pub(crate) fn multiply_add<const FMA: bool>(a: f32, b: f32, c: f32) -> f32 {
     }
 }
 
-/// The same in double precision.
-#[inline(always)]
-pub(crate) fn multiply_add_f64<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
-    if FMA {
-        a.mul_add(b, c)
-    } else {
-        a * b + c
-    }
-}
-
 /// Defines `fn name(simd: Simd, arguments...)` that calls the kernel `body::<FMA>(arguments...)` compiled for `simd`.
 macro_rules! multiversion {
-    ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $body:ident) => {
+    ($(#[$meta:meta])* fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $body:ident) => {
         $(#[$meta])*
         #[allow(clippy::too_many_arguments)]
-        $vis fn $name(simd: $crate::simd::Simd, $($arg: $type),*) $(-> $result)? {
+        fn $name(simd: $crate::simd::Simd, $($arg: $type),*) $(-> $result)? {
             #[cfg(target_arch = "x86_64")]
             {
                 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt")]
@@ -124,7 +110,7 @@ mod tests {
     #[test]
     fn every_instruction_set_of_this_machine_gives_the_same_answer() {
         let a: Vec<f32> = (0..100).map(|i| (i as f32).sin()).collect();
-        for simd in Simd::all() {
+        for simd in [Simd::Portable, Simd::Avx2, Simd::Avx512].into_iter().filter(|s| *s <= Simd::best()) {
             let expected: f32 = a.iter().map(|v| v * v).sum();
             assert!((dot(simd, &a, &a) - expected).abs() < 1e-4, "{simd:?}");
         }

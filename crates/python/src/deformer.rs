@@ -1,7 +1,7 @@
 //! Points bound to their logits.
 
 use neuralmls_core::Transform;
-use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::errors::{argument, from_core};
@@ -52,16 +52,10 @@ impl Deformer {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Deformed<'py>> {
         let targets = q.as_slice()?;
+        let deformed = run(py, progress, |report| self.inner.deform(targets, temperature, maps, report))?;
         let (n, d) = (self.inner.len(), self.dim);
-        let positions = PyArray2::zeros(py, [n, d], false);
-        let maps = maps.then(|| PyArray3::zeros(py, [n, d, d], false));
-        {
-            let mut y = positions.readwrite();
-            let mut matrices = maps.as_ref().map(|maps| maps.readwrite());
-            let y = y.as_slice_mut()?;
-            let matrices = matrices.as_mut().map(|maps| maps.as_slice_mut()).transpose()?;
-            run(py, progress, |report| self.inner.deform_into(targets, temperature, y, matrices, report))?;
-        }
+        let positions = PyArray1::from_vec(py, deformed.positions).reshape([n, d])?;
+        let maps = deformed.maps.map(|maps| PyArray1::from_vec(py, maps).reshape([n, d, d])).transpose()?;
         Ok((positions, maps))
     }
 }

@@ -14,7 +14,8 @@
 //! precision. (A single w_second would put the error of the sum of a thousand weights on one of them.)
 
 use crate::parallel::for_each_block;
-use crate::simd::{multiply_add, multiversion, Simd};
+use crate::simd::loops::{multiply_add_f32, multiversion_loops};
+use crate::simd::Simd;
 
 /// Points in a block.
 pub(crate) const LANES: usize = 16;
@@ -78,7 +79,7 @@ fn clear(rows: &mut [Row], first: usize) {
     }
 }
 
-multiversion! {
+multiversion_loops! {
     /// Packs the logits of 16 points (16 x m).
     fn pack(logits: &[f32], temperature: f64, rows: &mut [Row]) = pack_body
 }
@@ -145,7 +146,7 @@ fn exponential<const FMA: bool>(a: f32, b: f32, scale: f64) -> f32 {
     // The Taylor series of 2^f: what is left out is below 6e-9.
     let mut power = 1.525_273_4e-5;
     for c in [1.540_353e-4, 1.333_355_8e-3, 9.618_129e-3, 5.550_411e-2, 2.402_265e-1, 6.931_472e-1, 1.0] {
-        power = multiply_add::<FMA>(power, f, c);
+        power = multiply_add_f32::<FMA>(power, f, c);
     }
     let two_to_n = f32::from_bits(((n as f32 + ROUND_SINGLE).to_bits() << 23).wrapping_add(1.0f32.to_bits()));
     if normal {

@@ -2,7 +2,7 @@
 
 use super::super::affine::RIDGE;
 use super::super::matrix::Matrix;
-use super::{multiply_add_f64, Lane, BATCH};
+use super::{multiply_add, Lane, BATCH};
 
 /// From `R - I` to `s R - I`, `s = tr(R C) / extent`, at least 0.
 #[inline(always)]
@@ -16,7 +16,7 @@ pub(super) fn scale<const FMA: bool>(
         let mut trace = moment[0][lane] + moment[4][lane] + moment[8][lane];
         for r in 0..3 {
             for c in 0..3 {
-                trace = multiply_add_f64::<FMA>(change[3 * r + c][lane], moment[3 * c + r][lane], trace);
+                trace = multiply_add::<FMA>(change[3 * r + c][lane], moment[3 * c + r][lane], trace);
             }
         }
         let ratio = trace / extent[lane];
@@ -24,7 +24,7 @@ pub(super) fn scale<const FMA: bool>(
         let ratio = if ratio > 0.0 { ratio } else { 0.0 };
         for k in 0..9 {
             let one = if k % 4 == 0 { ratio - 1.0 } else { 0.0 };
-            change[k][lane] = multiply_add_f64::<FMA>(change[k][lane], ratio, one);
+            change[k][lane] = multiply_add::<FMA>(change[k][lane], ratio, one);
         }
         sound[lane] = if known { sound[lane] } else { 0.0 };
     }

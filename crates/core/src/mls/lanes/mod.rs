@@ -16,6 +16,9 @@
 //! does the others by the twin: mirrored targets that leave more than one turn open, moments beyond single
 //! precision's range, control points in one place.
 
+// Lanes are counted: a loop over one array's elements would hide that it is over all of them.
+#![allow(clippy::needless_range_loop)]
+
 mod linear;
 mod moments;
 mod rotation;
@@ -23,7 +26,8 @@ mod rotation;
 use super::matrix::{identity, Matrix};
 use super::{Anchor, Transform, ANCHOR_WEIGHT};
 use crate::frame::Frame;
-use crate::simd::{multiply_add, multiply_add_f64, multiversion, Simd};
+use crate::simd::loops::{multiply_add, multiply_add_f32, multiversion_loops};
+use crate::simd::Simd;
 use crate::softmax::{Row, LANES};
 
 /// Points in a batch: enough of them to hide the latency of divisions, few enough to stay in the first cache.
@@ -133,7 +137,7 @@ impl LaneHandles {
     }
 }
 
-multiversion! {
+multiversion_loops! {
     /// From moments to `M - I`.
     fn finish(transform: Transform, anchor: &Anchor<3>, scratch: &mut Scratch) = finish_body
 }
@@ -151,7 +155,7 @@ fn finish_body<const FMA: bool>(transform: Transform, anchor: &Anchor<3>, scratc
     }
 }
 
-multiversion! {
+multiversion_loops! {
     /// Moves the points.
     fn land(frame: &Frame, scratch: &Scratch, x: &[f64], y: &mut [f64]) = land_body
 }
@@ -169,9 +173,9 @@ fn land_body<const FMA: bool>(frame: &Frame, scratch: &Scratch, x: &[f64], y: &m
         for r in 0..3 {
             let mut moved = shift[r][lane];
             for c in 0..3 {
-                moved = multiply_add_f64::<FMA>(change[3 * r + c][lane], arm[c], moved);
+                moved = multiply_add::<FMA>(change[3 * r + c][lane], arm[c], moved);
             }
-            y[r] = multiply_add_f64::<FMA>(frame.half, moved, x[r]);
+            y[r] = multiply_add::<FMA>(frame.half, moved, x[r]);
         }
     }
 }

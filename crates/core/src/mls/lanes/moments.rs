@@ -9,7 +9,7 @@
 //! ```
 
 use super::super::matrix::Matrix;
-use super::{multiply_add_f64, multiversion, Lane, Row, Scratch, LANES};
+use super::{multiply_add, multiversion_loops, Lane, Row, Scratch, LANES};
 
 /// Control points in one go over the lanes: the sums are loaded and stored once for all of them.
 const TOGETHER: usize = 5;
@@ -17,15 +17,15 @@ const TOGETHER: usize = 5;
 /// The sums of a block's lanes, `K` of them.
 type Sums<const K: usize> = [[f64; LANES]; K];
 
-multiversion! {
+multiversion_loops! {
     /// The moments of a block of rigid maps.
     pub(super) fn rigid(rows: &[Row], points: &[[f64; 6]], block: usize, scratch: &mut Scratch) = rigid_body
 }
-multiversion! {
+multiversion_loops! {
     /// The same, with the extent of the control points.
     pub(super) fn similarity(rows: &[Row], points: &[[f64; 6]], block: usize, scratch: &mut Scratch) = similarity_body
 }
-multiversion! {
+multiversion_loops! {
     /// The same, with all moments of the control points, and of the residuals of the map `base` in place of the targets.
     pub(super) fn affine(
         rows: &[Row], points: &[[f64; 6]], base: &Matrix<3>, block: usize, scratch: &mut Scratch,
@@ -99,7 +99,7 @@ fn moments<const FMA: bool, const EXTENT: usize>(
             let share = second * sums.a[c][lane];
             for d in 0..3 {
                 let moment = &mut sums.moment[3 * c + d][lane];
-                *moment = multiply_add_f64::<FMA>(-share, mean[d][lane], *moment);
+                *moment = multiply_add::<FMA>(-share, mean[d][lane], *moment);
             }
             p_mean[c][lane] = own[c][lane] + share;
             shift[c][lane] = (own[3 + c][lane] - own[c][lane]) + second * (sums.b[c][lane] - sums.a[c][lane]);
@@ -151,7 +151,7 @@ fn add<const FMA: bool, const EXTENT: usize, const J: usize>(
     let (Ok(rows), Ok(points)) = (<&[Row; J]>::try_from(rows), <&[[f64; 6]; J]>::try_from(points)) else {
         return;
     };
-    let fma = multiply_add_f64::<FMA>;
+    let fma = multiply_add::<FMA>;
     for lane in 0..LANES {
         let (mut moment, mut extent) = ([0.0; 9], [0.0; EXTENT]);
         let (mut sum_a, mut sum_b, mut sum_residual) = ([0.0; 3], [0.0; 3], [0.0; 3]);

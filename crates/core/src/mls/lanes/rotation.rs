@@ -15,7 +15,7 @@
 //! error of v is that of A's entries. The quartic has four real roots, so that Newton's steps from above never pass the largest.
 
 use super::super::matrix::Matrix;
-use super::{multiply_add, multiply_add_f64, Lane, ANCHOR_WEIGHT, BATCH};
+use super::{multiply_add, multiply_add_f32, Lane, ANCHOR_WEIGHT, BATCH};
 
 /// Newton's steps before the first look at whether all lanes are done: enough for nearly all of them.
 const FIRST_STEPS: usize = 4;
@@ -61,7 +61,7 @@ fn normalise<const FMA: bool>(moment: &[Lane; 9], g: &Matrix<3>, a: &mut [Lane; 
     for lane in 0..BATCH {
         let mut square = 0.0;
         for k in 0..9 {
-            square = multiply_add_f64::<FMA>(moment[k][lane], moment[k][lane], square);
+            square = multiply_add::<FMA>(moment[k][lane], moment[k][lane], square);
         }
         // Single precision is enough for a first scale: the second one corrects it to the last digit.
         let inverse = f64::from(1.0 / (square as f32).sqrt());
@@ -70,8 +70,8 @@ fn normalise<const FMA: bool>(moment: &[Lane; 9], g: &Matrix<3>, a: &mut [Lane; 
         let mut entries = [0.0; 9];
         let mut excess = -1.0;
         for (k, entry) in entries.iter_mut().enumerate() {
-            *entry = multiply_add_f64::<FMA>(moment[k][lane], inverse, ANCHOR_WEIGHT * g[k % 3][k / 3]);
-            excess = multiply_add_f64::<FMA>(*entry, *entry, excess);
+            *entry = multiply_add::<FMA>(moment[k][lane], inverse, ANCHOR_WEIGHT * g[k % 3][k / 3]);
+            excess = multiply_add::<FMA>(*entry, *entry, excess);
         }
         // (1 + e)^(-1/2).
         let scale = 1.0 - excess * (0.5 - 0.375 * excess);
@@ -85,7 +85,7 @@ fn normalise<const FMA: bool>(moment: &[Lane; 9], g: &Matrix<3>, a: &mut [Lane; 
 /// The cofactors of a 3 x 3 matrix.
 #[inline(always)]
 fn cofactors<const FMA: bool>(a: &[f64; 9]) -> [f64; 9] {
-    let minor = |i: usize, j: usize, k: usize, l: usize| multiply_add_f64::<FMA>(a[i], a[j], -(a[k] * a[l]));
+    let minor = |i: usize, j: usize, k: usize, l: usize| multiply_add::<FMA>(a[i], a[j], -(a[k] * a[l]));
     [
         minor(4, 8, 5, 7),
         minor(5, 6, 3, 8),
@@ -112,14 +112,14 @@ fn coefficients<const FMA: bool>(a: &[Lane; 9], d: &mut Lane, k: &mut Lane, v: &
         let second = cofactors::<FMA>(&first);
         let (mut square, mut determinant) = (0.0, 0.0);
         for i in 0..9 {
-            square = multiply_add_f64::<FMA>(first[i], first[i], square);
-            determinant = multiply_add_f64::<FMA>(entries[i], second[i], determinant);
+            square = multiply_add::<FMA>(first[i], first[i], square);
+            determinant = multiply_add::<FMA>(entries[i], second[i], determinant);
         }
         d[lane] = determinant;
         k[lane] = square;
         // In single precision, and a little more than that.
         let positive = if determinant > 0.0 { determinant } else { 0.0 };
-        let b = 1.000_001 * multiply_add::<FMA>(3.464_102, positive as f32, square as f32).sqrt();
+        let b = 1.000_001 * multiply_add_f32::<FMA>(3.464_102, positive as f32, square as f32).sqrt();
         v[lane] = f64::from(2.0 * b / (1.0 + (1.0 + 2.0 * b).sqrt()));
     }
 }
@@ -159,9 +159,9 @@ fn descend<const FMA: bool, const N: usize>(d: &Lane, k: &Lane, v: &mut Lane, sl
 #[inline(always)]
 fn newton<const FMA: bool>(d8: f64, k4: f64, v: f64) -> (f64, f64) {
     // e = v (2 + v) is the eigenvalue's square less 1.
-    let e = multiply_add_f64::<FMA>(v, v, 2.0 * v);
-    let value = multiply_add_f64::<FMA>(e, e, -multiply_add_f64::<FMA>(d8, v, d8 + k4));
-    let derivative = multiply_add_f64::<FMA>(4.0 * e, v, multiply_add_f64::<FMA>(4.0, e, -d8));
+    let e = multiply_add::<FMA>(v, v, 2.0 * v);
+    let value = multiply_add::<FMA>(e, e, -multiply_add::<FMA>(d8, v, d8 + k4));
+    let derivative = multiply_add::<FMA>(4.0 * e, v, multiply_add::<FMA>(4.0, e, -d8));
     // A division in single precision: a step may be wrong in its eighth digit, the next one is right in the sixteenth.
     let step = value * f64::from(1.0 / derivative as f32);
     (if derivative > 0.0 { step } else { 0.0 }, derivative)
@@ -188,7 +188,7 @@ fn judge(k: &Lane, v: &Lane, d: &Lane, slope: &Lane, sound: &mut Lane) {
 /// `R - I` from the adjugate of `N - (1 + v) I`, which is a multiple of the quaternion's outer product with itself.
 #[inline(always)]
 fn quaternions<const FMA: bool>(a: &[Lane; 9], v: &Lane, change: &mut [Lane; 9]) {
-    let fma = multiply_add_f64::<FMA>;
+    let fma = multiply_add::<FMA>;
     for lane in 0..BATCH {
         let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = [
             a[0][lane], a[1][lane], a[2][lane], a[3][lane], a[4][lane], a[5][lane], a[6][lane], a[7][lane],

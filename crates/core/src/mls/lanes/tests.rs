@@ -4,7 +4,6 @@ use super::super::moments::Moments;
 use super::super::{matrix, Handles, Local};
 use super::*;
 use crate::softmax::{relative_weights, PackedWeights};
-use proptest::prelude::*;
 
 const ALL: [Transform; 3] = [Transform::Rigid, Transform::Similarity, Transform::Affine];
 const TEMPERATURES: [f64; 9] = [0.01, 0.02, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0];
@@ -43,7 +42,7 @@ fn compare(
         })
         .collect();
     let mut worst = Worst::default();
-    for simd in Simd::all() {
+    for simd in crate::simd::loops::all() {
         let mut lanes = handles.lanes(Frame::IDENTITY).unwrap();
         lanes.simd = simd;
         let (mut y, mut maps) = (vec![0.0; 3 * n], vec![0.0; 9 * n]);
