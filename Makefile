@@ -8,7 +8,7 @@ FUZZ_SECONDS ?= 30
 .PHONY: demo test rust python fuzz wasm tools clean
 
 demo: .venv/figures.stamp
-	$(BIN)/neuralmls demo -o out
+	$(BIN)/neuralmls demo -o out --force
 
 test: rust wasm python fuzz
 	@echo "make test: everything passed"

@@ -16,7 +16,8 @@ def obj() -> dict[str, bytes]:
         "all": b"# c\r\nmtllib a.mtl\r\nv 0 0 0 1\r\nv 1 0 0 0.5 0.5 1\r\nv 0 1e0 \\\r\n 0\r\nvt 0 1\r\nvn 0 0 1\r\n"
         b"g x y\r\nusemtl oak\r\nf 1/1/1 2/1/1 3/1/1\r\nf -3//-1 -2//1 -1//1\r\nl 1 2\r\np 3\r\n",
         "cloud": b"vn 0 0 1\nv 0 0 0\nvn 1 0 0\nv 1 1 1\n",
-        "surface": b"v 0 0 0\nv 1 0 0\nvp 0.5\ncstype bspline\ndeg 1\ncurv 0 1 1 2\nparm u 0 1\nend\nsurf 0 1 0 1 1 2\n",
+        "surface": b"v 0 0 0\nv 1 0 0\nvp 0.5\ncstype bspline\ndeg 1\ncurv 0 1 1 2\nparm u 0 1\nend\n"
+        b"surf 0 1 0 1 1 2\n",
     }
 
 
@@ -31,7 +32,7 @@ def off() -> dict[str, bytes]:
 def table() -> dict[str, bytes]:
     return {
         "xyz": b"1 2 3 255 0 0\n4 5.5 6 0 0 0\n",
-        "csv": b"name,x,y,z,nx,ny,nz\n\"a, b\",1,2,3,0,0,1\nc,4,5,6,0,1,0\n",
+        "csv": b'name,x,y,z,nx,ny,nz\n"a, b",1,2,3,0,0,1\nc,4,5,6,0,1,0\n',
         "count": b"2\nwater\nO 1 2 3\nH 4 5 6\n",
         "flat": b"//X Y\n1;2\n3;4\n",
         "line": b"1\n2.5e0\n",
@@ -41,7 +42,8 @@ def table() -> dict[str, bytes]:
 def ply() -> dict[str, bytes]:
     def header(kind: str) -> bytes:
         return (
-            f"ply\nformat {kind} 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+            f"ply\nformat {kind} 1.0\ncomment c\nelement vertex 4\n"
+            "property float x\nproperty float y\nproperty float z\n"
             "property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nelement face 2\n"
             "property list uchar int vertex_indices\nend_header\n"
         ).encode()

@@ -8,6 +8,7 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 import pytest
+
 from neuralmls.control_points import ControlPoints
 from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
 

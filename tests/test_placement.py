@@ -4,9 +4,10 @@ import time
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
+
 from neuralmls.errors import ArgumentError
 from neuralmls.placement import farthest_points
-from numpy.typing import NDArray
 
 SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
 TWO_FACES = np.array([[0, 1, 2], [0, 2, 3]])

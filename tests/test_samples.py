@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+
 from neuralmls.errors import ArgumentError, FileError
 from neuralmls.samples import NAMES, make
 from neuralmls.samples.sample import write_obj

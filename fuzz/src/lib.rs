@@ -61,7 +61,8 @@ pub fn check(bytes: &[u8], format: Format) {
     let unmoved = shape.write(positions, None).expect("an unmoved shape is always written");
     assert!(unmoved.bytes == bytes && unmoved.side_files.is_empty());
 
-    let moved: Vec<f64> = positions.iter().enumerate().map(|(i, c)| 0.75 * c + (i % 7) as f64 * 0.125).collect();
+    let moved: Vec<f64> =
+        positions.iter().enumerate().map(|(i, c)| 0.75 * c + (i % 7) as f64 * 0.125).collect();
     if moved.iter().any(|c| !c.is_finite()) {
         return;
     }
@@ -72,7 +73,8 @@ pub fn check(bytes: &[u8], format: Format) {
             // Positions that the file's number type cannot hold.
             Err(error) => return check_sentence(&error),
         };
-        let again = Shape::read(written.bytes, format, &none).unwrap_or_else(|error| panic!("what was written: {error}"));
+        let again = Shape::read(written.bytes, format, &none)
+            .unwrap_or_else(|error| panic!("what was written: {error}"));
         assert_eq!(again.positions().len(), positions.len());
         assert_eq!(again.faces(), shape.faces());
     }

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from neuralmls.deformer import Deformer
     from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
     from neuralmls.pipeline import deform
+    from neuralmls.point_tree import PointTree
     from neuralmls.placement import farthest_points
     from neuralmls.shape import Shape, read
     from neuralmls.weights import InverseDistanceWeights, NeuralWeights, Weights
@@ -33,6 +34,7 @@ __all__ = [
     "InverseDistanceWeights",
     "NeuralMLSError",
     "NeuralWeights",
+    "PointTree",
     "Shape",
     "Weights",
     "__version__",
@@ -42,7 +44,7 @@ __all__ = [
     "softmax",
 ]
 
-# Which module has which name. They are imported when first asked for, so that `neuralmls --help` need not wait for numpy.
+# Which module has which name. They are imported when first asked for: `neuralmls --help` need not wait for numpy.
 # No module may be called like a name that another one gives: importing it would hide that name.
 _HOMES = {
     "ArgumentError": "errors",
@@ -53,6 +55,7 @@ _HOMES = {
     "InverseDistanceWeights": "weights",
     "NeuralMLSError": "errors",
     "NeuralWeights": "weights",
+    "PointTree": "point_tree",
     "Shape": "shape",
     "Weights": "weights",
     "deform": "pipeline",

@@ -19,11 +19,13 @@ class ShapeFile:
     def facts(self) -> list[tuple[str, str]]: ...
     @property
     def has_normals(self) -> bool: ...
+    @property
+    def named_files(self) -> list[str]: ...
     def positions(self) -> NDArray[np.float64]: ...
     def faces(self) -> NDArray[np.uint32] | None: ...
     def write(
-        self, positions: NDArray[np.float64], maps: NDArray[np.float64] | None
-    ) -> tuple[bytes, list[tuple[str, bytes]]]: ...
+        self, positions: NDArray[np.float64], maps: NDArray[np.float64] | None, stem: str | None
+    ) -> tuple[bytes, list[tuple[str, str, bytes]]]: ...
 
 def inverse_distance_logits(
     x: NDArray[np.float64],
@@ -33,6 +35,11 @@ def inverse_distance_logits(
     epsilon: float,
     progress: _Progress,
 ) -> NDArray[np.float32]: ...
+
+class PointTree:
+    def __new__(
+        cls, x: NDArray[np.float64], centre: Sequence[float], half: float, progress: _Progress
+    ) -> PointTree: ...
 
 class Network:
     def __new__(
@@ -54,6 +61,7 @@ class Network:
     @property
     def layers(self) -> list[tuple[NDArray[np.float32], NDArray[np.float32]]]: ...
     def logits(self, x: NDArray[np.float64], progress: _Progress) -> NDArray[np.float32]: ...
+    def logits_of_tree(self, tree: PointTree, progress: _Progress) -> NDArray[np.float32]: ...
 
 def fit(
     p: NDArray[np.float64],
@@ -79,5 +87,10 @@ class Deformer:
         transform: str,
     ) -> Deformer: ...
     def deform(
-        self, q: NDArray[np.float64], temperature: float, maps: bool, progress: _Progress
+        self,
+        q: NDArray[np.float64],
+        temperature: float,
+        maps: bool,
+        out: NDArray[np.float64] | None,
+        progress: _Progress,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]: ...

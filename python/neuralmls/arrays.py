@@ -27,9 +27,7 @@ def as_points(name: str, values: ArrayLike, dimension: int | None = None) -> NDA
     except (TypeError, ValueError) as error:
         raise ArgumentError(f"{name}: expected an (n, d) array of numbers: {error}") from error
     if points.ndim != 2 or not 1 <= points.shape[1] <= 3:
-        raise ArgumentError(
-            f"{name}: expected an (n, d) array with d = 1, 2 or 3, found shape {points.shape}"
-        )
+        raise ArgumentError(f"{name}: expected an (n, d) array with d = 1, 2 or 3, found shape {points.shape}")
     if dimension is not None and points.shape[1] != dimension:
         raise ArgumentError(f"{name}: expected {dimension} coordinates a point, found {points.shape[1]}")
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from neuralmls import _core
 from neuralmls.arrays import as_points
+from neuralmls.companions import copy_along, read_beside
 from neuralmls.errors import ArgumentError, FileError
 from neuralmls.files import write_atomically
 
@@ -68,18 +69,23 @@ class Shape:
         return self._file.has_normals
 
     def encode(
-        self, positions: ArrayLike, *, maps: ArrayLike | None = None
+        self, positions: ArrayLike, *, maps: ArrayLike | None = None, stem: str | None = None
     ) -> tuple[bytes, dict[str, bytes]]:
-        """Return the file's bytes with other positions, and those of its changed side files (glTF buffers) by their name.
+        """Return the file's bytes with other positions, and those of its changed side files (glTF buffers) by name.
 
-        Parameters and errors as for `write`.
+        The side files are called after `stem` if given, else as they were. Other parameters and errors as for `write`.
         """
+        data, side_files = self._encode(positions, maps, stem)
+        return data, {name: content for name, _, content in side_files}
+
+    def _encode(
+        self, positions: ArrayLike, maps: ArrayLike | None, stem: str | None
+    ) -> tuple[bytes, list[tuple[str, str, bytes]]]:
         x = as_points("positions", positions, self._positions.shape[1])
         m = None if maps is None else np.ascontiguousarray(maps, dtype=np.float64)
         if m is not None and m.ndim != 3:
             raise ArgumentError(f"maps: expected an (n, d, d) array, found shape {m.shape}")
-        data, side_files = self._file.write(x, m)
-        return data, dict(side_files)
+        return self._file.write(x, m, stem)
 
     def write(
         self,
@@ -87,11 +93,12 @@ class Shape:
         positions: ArrayLike,
         *,
         maps: ArrayLike | None = None,
+        overwrite: bool = True,
     ) -> list[Path]:
         """Write the file with other positions; everything else is as it was. Unmoved, the file's very bytes.
 
-        Side files whose content changes (the `.bin` of a `.gltf`) are written beside it. Files that the shape names and that are
-        not there yet (materials, textures, unchanged buffers) are copied along when `path` is in another folder.
+        Side files whose content changes are called after it (`bent.gltf`: `bent.bin`). Files that the shape names
+        (materials, textures) are copied along into another folder, where they are not there yet.
 
         Parameters
         ----------
@@ -100,6 +107,8 @@ class Shape:
         maps : (n, d, d), optional
             The local maps of the deformation (`Deformer.deform(..., return_maps=True)`): normals turn by their inverse
             transpose. Without them, normals turn as the faces around each vertex do.
+        overwrite : bool
+            Whether files that are there may be replaced.
 
         Returns
         -------
@@ -108,22 +117,24 @@ class Shape:
         Raises
         ------
         ArgumentError
-            The positions or maps do not fit the shape.
+            The positions or maps do not fit the shape; a file is there and may not be replaced.
         FileError
             The ending is of another format, or a file cannot be written; what was there is then untouched.
         """
         target = Path(path)
         if target.suffix[1:].lower() not in self.extensions:
             endings = ", ".join(f".{ending}" for ending in self.extensions)
-            raise FileError(f"{target}: a {self.format} file is written as {endings}, there is no conversion")
-        data, side_files = self.encode(positions, maps=maps)
-        written = []
-        for name, content in side_files.items():
-            beside = target.parent / name
-            write_atomically(beside, content)
-            written.append(beside)
-        write_atomically(target, data)
-        return [target, *written]
+            raise FileError(f"{target}: expected the ending {endings}, a file of the format {self.format} stays one")
+        data, side_files = self._encode(positions, maps, target.stem)
+        files = {target: data} | {target.parent / name: content for name, _, content in side_files}
+        for file in files:
+            if not overwrite and file.exists():
+                raise ArgumentError(f"{file}: there is such a file already")
+        for file in reversed(files):  # the shape last: whoever finds it, finds all that it needs
+            write_atomically(file, files[file])
+        replaced = {was for _, was, _ in side_files}
+        named = [name for name in self._file.named_files if name not in replaced]
+        return [*files, *copy_along(named, self._path.parent, target.parent)]
 
 
 def read(path: str | os.PathLike[str]) -> Shape:
@@ -140,18 +151,7 @@ def read(path: str | os.PathLike[str]) -> Shape:
     except OSError as error:
         raise FileError(f"{source}: cannot read: {error.strerror or error}") from error
     try:
-        file = _core.ShapeFile(data, source.suffix[1:], lambda name: _side_file(source.parent, name))
+        file = _core.ShapeFile(data, source.suffix[1:], lambda name: read_beside(source.parent, name))
     except FileError as error:
         raise FileError(f"{source}: {error}") from None
     return Shape(source, file)
-
-
-def _side_file(folder: Path, name: str) -> bytes:
-    """A file that the shape names, which must lie in its folder or below."""
-    relative = PurePosixPath(name)
-    if relative.is_absolute() or ".." in relative.parts or "\\" in name or ":" in name:
-        raise FileError(f"'{name}' leaves the shape's folder")
-    try:
-        return folder.joinpath(*relative.parts).read_bytes()
-    except OSError as error:
-        raise FileError(f"cannot read '{name}' beside it: {error.strerror or error}") from error

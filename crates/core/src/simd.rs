@@ -1,13 +1,21 @@
 //! One kernel, compiled for several instruction sets, the best of which is chosen when it runs.
 //!
-//! A kernel is plain Rust over arrays of 16 lanes, `#[inline(always)]`, with the constant `FMA` that says whether a fused
-//! multiply-add is one instruction. [`multiversion!`] compiles it once for each instruction set; the compiler turns the
-//! arrays into registers. No intrinsics, and the only `unsafe` is the call of a function whose instructions were detected.
+//! A kernel is written once over [`Lanes`], sixteen numbers in registers, and `#[inline(always)]`. [`multiversion!`] compiles it
+//! for each instruction set and calls the version that was detected. That call and the intrinsics below are all the
+//! `unsafe` there is: values of [`Avx2`] and [`Avx512`] are made inside such kernels only.
+//!
+//! Plain arrays of 16 in place of intrinsics were tried: the compiler turns nested loops over them into gathers. Kernels that are one
+//! loop over lanes, without a nested one, need no intrinsics: [`loops`].
 
+mod lanes;
 pub(crate) mod loops;
 
-/// An instruction set that kernels are compiled for. Its values come from [`Simd::detect`] alone, which is what makes [`multiversion!`]
-/// sound.
+#[cfg(target_arch = "x86_64")]
+pub(crate) use lanes::{Avx2, Avx512};
+pub(crate) use lanes::{Lanes, Portable, WIDTH};
+
+/// An instruction set that kernels are compiled for. Its values come from [`Simd::detect`] alone, which is what makes
+/// [`multiversion!`] sound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Simd {
     /// What every machine of the target has.
@@ -19,31 +27,28 @@ pub(crate) enum Simd {
 }
 
 impl Simd {
-    /// The best that this machine has, or what the environment variable `NEURALMLS_SIMD` (portable, avx2, avx512) names, if
-    /// this machine has that.
+    /// The best that this machine has; the environment variable `NEURALMLS_SIMD` (portable, avx2) asks for less.
     pub(crate) fn detect() -> Simd {
         let best = Simd::best();
-        let named = match std::env::var("NEURALMLS_SIMD").as_deref() {
+        match std::env::var("NEURALMLS_SIMD").as_deref() {
             Ok("portable") => Simd::Portable,
-            Ok("avx2") => Simd::Avx2,
+            Ok("avx2") => best.min(Simd::Avx2),
             _ => best,
-        };
-        named.min(best)
+        }
     }
 
     #[cfg(target_arch = "x86_64")]
     fn best() -> Simd {
-        if is_x86_feature_detected!("avx512f")
+        let avx512 = is_x86_feature_detected!("avx512f")
             && is_x86_feature_detected!("avx512bw")
             && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512vl")
-            && is_x86_feature_detected!("fma")
-        {
-            Simd::Avx512
-        } else if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-            Simd::Avx2
-        } else {
+            && is_x86_feature_detected!("avx512vl");
+        if !(is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")) {
             Simd::Portable
+        } else if avx512 {
+            Simd::Avx512
+        } else {
+            Simd::Avx2
         }
     }
 
@@ -53,33 +58,22 @@ impl Simd {
     }
 }
 
-/// `a * b + c`, in one instruction where `FMA`.
-#[inline(always)]
-pub(crate) fn multiply_add<const FMA: bool>(a: f32, b: f32, c: f32) -> f32 {
-    if FMA {
-        a.mul_add(b, c)
-    } else {
-        a * b + c
-    }
-}
-
-/// Defines `fn name(simd: Simd, arguments...)` that calls the kernel `body::<FMA>(arguments...)` compiled for `simd`.
+/// Defines `fn name(simd: Simd, arguments...)`, which calls the kernel `body::<L: Lanes>(arguments...)` compiled for `simd`.
 macro_rules! multiversion {
-    ($(#[$meta:meta])* fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $body:ident) => {
-        $(#[$meta])*
+    (fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $body:ident) => {
         #[allow(clippy::too_many_arguments)]
         fn $name(simd: $crate::simd::Simd, $($arg: $type),*) $(-> $result)? {
             #[cfg(target_arch = "x86_64")]
             {
-                #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt")]
+                #[target_feature(enable = "avx2,fma")]
                 #[allow(clippy::too_many_arguments)]
                 fn avx2($($arg: $type),*) $(-> $result)? {
-                    $body::<true>($($arg),*)
+                    $body::<$crate::simd::Avx2>($($arg),*)
                 }
-                #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt")]
+                #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma")]
                 #[allow(clippy::too_many_arguments)]
                 fn avx512($($arg: $type),*) $(-> $result)? {
-                    $body::<true>($($arg),*)
+                    $body::<$crate::simd::Avx512>($($arg),*)
                 }
                 match simd {
                     // SAFETY: `Simd` names an instruction set only where it was detected.
@@ -91,7 +85,7 @@ macro_rules! multiversion {
             }
             #[cfg(not(target_arch = "x86_64"))]
             let _ = simd;
-            $body::<false>($($arg),*)
+            $body::<$crate::simd::Portable>($($arg),*)
         }
     };
 }
@@ -101,18 +95,50 @@ pub(crate) use multiversion;
 mod tests {
     use super::*;
 
+    /// Every operation of [`Lanes`] on two arrays.
     #[inline(always)]
-    fn dot_body<const FMA: bool>(a: &[f32], b: &[f32]) -> f32 {
-        a.iter().zip(b).fold(0.0, |sum, (a, b)| multiply_add::<FMA>(*a, *b, sum))
+    fn all_body<L: Lanes>(a: &[f32; WIDTH], b: &[f32; WIDTH]) -> Vec<[f32; WIDTH]> {
+        let (x, y) = (L::load(a), L::load(b));
+        let results = [
+            x.add(y),
+            x.sub(y),
+            x.mul(y),
+            x.div(y),
+            x.mul_add(y, L::splat(0.5)),
+            x.max(y),
+            x.min(y),
+            x.mul(x).sqrt(),
+            L::select(x.less(y), x, y),
+            L::splat(x.total()),
+        ];
+        results.map(L::store).to_vec()
     }
-    multiversion! { fn dot(a: &[f32], b: &[f32]) -> f32 = dot_body }
+    multiversion! { fn all(a: &[f32; WIDTH], b: &[f32; WIDTH]) -> Vec<[f32; WIDTH]> = all_body }
 
     #[test]
-    fn every_instruction_set_of_this_machine_gives_the_same_answer() {
-        let a: Vec<f32> = (0..100).map(|i| (i as f32).sin()).collect();
+    fn every_instruction_set_of_this_machine_gives_the_same_answers() {
+        let a = std::array::from_fn(|i| (i as f32 * 0.7).sin());
+        let b = std::array::from_fn(|i| (i as f32 * 1.3).cos() + 2.0);
+        let operations: [fn(f32, f32) -> f32; 9] = [
+            |a, b| a + b,
+            |a, b| a - b,
+            |a, b| a * b,
+            |a, b| a / b,
+            |a, b| a * b + 0.5,
+            f32::max,
+            f32::min,
+            |a, _| a.abs(),
+            |a, b| if a < b { a } else { b },
+        ];
         for simd in [Simd::Portable, Simd::Avx2, Simd::Avx512].into_iter().filter(|s| *s <= Simd::best()) {
-            let expected: f32 = a.iter().map(|v| v * v).sum();
-            assert!((dot(simd, &a, &a) - expected).abs() < 1e-4, "{simd:?}");
+            let results = all(simd, &a, &b);
+            for (k, operation) in operations.iter().enumerate() {
+                for i in 0..WIDTH {
+                    let expected = operation(a[i], b[i]);
+                    assert!((results[k][i] - expected).abs() <= 1e-6, "{simd:?}, operation {k}, lane {i}");
+                }
+            }
+            assert!((results[9][0] - a.iter().sum::<f32>()).abs() < 1e-5, "{simd:?}");
         }
     }
 }

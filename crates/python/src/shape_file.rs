@@ -11,8 +11,8 @@ use crate::errors::from_shapes;
 #[pyclass(frozen)]
 pub(crate) struct ShapeFile(Shape);
 
-/// The file's bytes, and its changed side files by the path that the original names.
-type Written<'py> = (Bound<'py, PyBytes>, Vec<(String, Bound<'py, PyBytes>)>);
+/// The file's bytes, and its changed side files: the path that it names, the path that the original names, the bytes.
+type Written<'py> = (Bound<'py, PyBytes>, Vec<(String, String, Bound<'py, PyBytes>)>);
 
 #[pymethods]
 impl ShapeFile {
@@ -65,19 +65,27 @@ impl ShapeFile {
         self.0.faces().map(faces).transpose()
     }
 
-    /// The same file with other positions.
-    #[pyo3(signature = (positions, maps))]
+    /// Files beside this one that it names.
+    #[getter]
+    fn named_files(&self) -> Vec<String> {
+        self.0.named_files()
+    }
+
+    /// The same file with other positions, its changed side files called after `stem`.
+    #[pyo3(signature = (positions, maps, stem))]
     fn write<'py>(
         &self,
         py: Python<'py>,
         positions: PyReadonlyArray2<'py, f64>,
         maps: Option<PyReadonlyArray3<'py, f64>>,
+        stem: Option<&str>,
     ) -> PyResult<Written<'py>> {
         let positions = positions.as_slice()?;
         let maps = maps.as_ref().map(|maps| maps.as_slice()).transpose()?;
-        let written = py.detach(|| self.0.write(positions, maps)).map_err(|error| from_shapes(&error))?;
+        let written =
+            py.detach(|| self.0.write_as(positions, maps, stem)).map_err(|error| from_shapes(&error))?;
         let side_files =
-            written.side_files.into_iter().map(|(path, bytes)| (path, PyBytes::new(py, &bytes))).collect();
+            written.side_files.into_iter().map(|f| (f.name, f.was, PyBytes::new(py, &f.bytes))).collect();
         Ok((PyBytes::new(py, &written.bytes), side_files))
     }
 }

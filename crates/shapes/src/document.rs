@@ -26,12 +26,19 @@ pub(crate) struct Moved<'a> {
     /// Row-major `dim x dim` local map of each position: the caller's, or estimated from the faces, or (a cloud without
     /// maps) none, and then normals stay as they are. Always given where possible if [`Document::has_normals`].
     pub maps: Option<&'a [f64]>,
+    /// What side files that change are to be called, without ending; `None` to keep their names.
+    pub stem: Option<&'a str>,
 }
 
 /// A file that was read, ready to be written again with other positions.
 pub(crate) trait Document: Send + Sync {
     /// Whether the file holds normals or tangents, so that the local maps matter.
     fn has_normals(&self) -> bool;
+
+    /// Files beside this one that it names: buffers, images, material libraries.
+    fn named_files(&self) -> Vec<String> {
+        Vec::new()
+    }
 
     /// The file with the positions of `moved`. `source` is the file's bytes as they were read. Not called for a shape that did
     /// not move: that one's bytes are returned as they are.

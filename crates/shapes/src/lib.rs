@@ -34,4 +34,4 @@ mod text;
 
 pub use error::{Error, ErrorKind, Place};
 pub use format::Format;
-pub use shape::{Fact, Shape, SideFiles, Written};
+pub use shape::{Fact, Shape, SideFile, SideFiles, Written};

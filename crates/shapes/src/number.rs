@@ -11,13 +11,20 @@ pub(crate) fn parse(token: &[u8]) -> Option<f64> {
 
 /// How many digits a token has behind its decimal point (an exponent moves the point).
 pub(crate) fn decimals(token: &[u8]) -> usize {
-    let exponent_at = token.iter().position(|b| matches!(b, b'e' | b'E')).unwrap_or(token.len());
-    let mantissa = &token[..exponent_at];
-    let behind = mantissa.iter().position(|&b| b == b'.').map_or(0, |dot| mantissa.len() - dot - 1) as i64;
-    let exponent: i64 = std::str::from_utf8(token.get(exponent_at + 1..).unwrap_or(b""))
-        .ok()
-        .and_then(|e| e.parse().ok())
-        .unwrap_or(0);
+    let (mut dot, mut end, mut exponent) = (None, token.len(), 0i64);
+    for (at, byte) in token.iter().enumerate() {
+        match byte {
+            b'.' => dot = Some(at),
+            b'e' | b'E' => {
+                end = at;
+                exponent =
+                    std::str::from_utf8(&token[at + 1..]).ok().and_then(|e| e.parse().ok()).unwrap_or(0);
+                break;
+            }
+            _ => {}
+        }
+    }
+    let behind = dot.map_or(0, |dot| end - dot - 1) as i64;
     (behind - exponent.clamp(-400, 400)).clamp(0, 400) as usize
 }
 

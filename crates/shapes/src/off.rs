@@ -157,12 +157,14 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
         }
     }
     let mut triangles = Vec::new();
-    let mut sizes = facts::FaceSizes::default();
+    let (mut sizes, mut coloured) = (facts::FaceSizes::default(), 0);
     for index in 0..counts.faces {
         let line = lines.next().ok_or_else(|| {
             Error::malformed(format!("the file ends after {index} of {} faces", counts.faces))
         })?;
-        sizes.add(read_face(line, counts.vertices, &mut triangles)?);
+        let corners = read_face(line, counts.vertices, &mut triangles)?;
+        sizes.add(corners);
+        coloured += usize::from(tokens(line.bytes, 0).count() > corners + 1);
     }
     let mut facts = Vec::new();
     sizes.tell(&mut facts);
@@ -174,6 +176,9 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
         if announced {
             facts.push((name.into(), format!("{} ({fate})", counts.vertices)));
         }
+    }
+    if coloured > 0 {
+        facts.push(("face colours".into(), format!("{coloured} (carried over)")));
     }
     Ok(Parsed {
         dim: 3,

@@ -16,9 +16,19 @@ pub type Fact = (String, String);
 pub struct Written {
     /// The file's bytes.
     pub bytes: Vec<u8>,
-    /// Side files whose content changed too (the buffers of a `.gltf`): the relative path that the *original* file names, and
-    /// its new bytes. `bytes` refers to them by the same path.
-    pub side_files: Vec<(String, Vec<u8>)>,
+    /// Side files whose content changed too (the buffers of a `.gltf`).
+    pub side_files: Vec<SideFile>,
+}
+
+/// A side file written anew.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SideFile {
+    /// The relative path by which the written file names it.
+    pub name: String,
+    /// The relative path by which the original named it.
+    pub was: String,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
 }
 
 /// A shape read from a file: positions, a triangulated view of the faces, and everything else as it was.
@@ -117,14 +127,33 @@ impl Shape {
         self.document.has_normals()
     }
 
-    /// The same file with other positions.
+    /// Files beside this one that it names, by their relative paths: buffers, images, material libraries.
+    pub fn named_files(&self) -> Vec<String> {
+        self.document.named_files()
+    }
+
+    /// The same file with other positions, its side files under their own names.
+    ///
+    /// # Errors
+    /// As [`Shape::write_as`].
+    pub fn write(&self, positions: &[f64], maps: Option<&[f64]>) -> Result<Written, Error> {
+        self.write_as(positions, maps, None)
+    }
+
+    /// The same file with other positions. Side files that change are called after `stem` if given (`"bent"`: `bent.bin`,
+    /// `bent-2.bin` ...), so that those of the original need not be overwritten.
     ///
     /// `maps` holds a row-major `dim x dim` local map a position, by whose inverse transpose the normals turn. Without
     /// it, normals turn as the faces around each position do; a cloud without maps keeps its normals.
     ///
     /// # Errors
     /// Where the lengths do not fit the shape, or a position is not finite.
-    pub fn write(&self, positions: &[f64], maps: Option<&[f64]>) -> Result<Written, Error> {
+    pub fn write_as(
+        &self,
+        positions: &[f64],
+        maps: Option<&[f64]>,
+        stem: Option<&str>,
+    ) -> Result<Written, Error> {
         let (before, dim) = (&self.positions, self.dim);
         if positions.len() != before.len() {
             return Err(Error::argument(format!(
@@ -148,7 +177,7 @@ impl Shape {
             }
             _ => None,
         };
-        let moved = Moved { before, after: positions, maps: maps.or(estimated.as_deref()) };
+        let moved = Moved { before, after: positions, maps: maps.or(estimated.as_deref()), stem };
         self.document.write(&self.source, &moved)
     }
 }

@@ -43,6 +43,7 @@ fn n_gons_become_fans_and_are_told() {
         off("OFF\n5 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 2 0\n5 0 1 2 4 3\n4 0 1 2 3 0.5 0.5 0.5\n2 0 1\n");
     assert_eq!(shape.faces().unwrap().len(), 5);
     assert_eq!(shape.facts()[0].1, "3 (1 quads, 1 n-gons, 1 with fewer than three corners)");
+    assert_eq!(shape.facts()[1], ("face colours".to_string(), "1 (carried over)".to_string()));
 }
 
 #[test]

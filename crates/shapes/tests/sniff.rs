@@ -79,6 +79,7 @@ fn formats_that_are_not_read_are_named() {
         (b"\xff\xfev\0 \0", "obj", "this is UTF-16 text, which is not read: save it as UTF-8"),
         (b"\0v\0 \0\x31\0 \0\x31", "obj", "this is UTF-16 text, which is not read: save it as UTF-8"),
         (b"<?xml version='1.0'?>", "obj", "this is an XML or HTML file, which is not read"),
+        (b"1 2 3\n", "pcd", "this is a PCD point cloud, which is not read"),
         (b"newmtl oak\n", "mtl", "this is a material library of an OBJ file, not a shape, which is not read"),
         (b"", "obj", "the file is empty"),
         (b"{}", "json", "expected a shape file (OBJ, PLY, OFF, STL, glTF, GLB, XYZ/CSV, NPY), found an unknown one that ends in .json"),

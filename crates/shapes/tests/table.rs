@@ -57,6 +57,8 @@ fn normals_that_the_header_names_turn() {
     let result = shape.write(&[5.5, 6.0, 7.0], Some(&map)).unwrap().bytes;
     assert_eq!(String::from_utf8(result).unwrap(), "nx,ny,nz,x,y,z\n0.877583,0.479426,0,5.5,6,7\n");
     assert!(!table("5 6 7 1 0 0\n").has_normals());
+    // The first of them is taken for a coordinate.
+    assert!(!table("name,length,width,nx,ny,nz\na,5,6,7,1,0\n").has_normals());
 }
 
 #[test]

@@ -72,7 +72,7 @@ def deform(
 
     as_number("temperature", temperature, 0)
     stages = Stages(quiet=quiet)
-    with stages.stage("reading"):
+    with stages.stage("read"):
         source = read(shape)
         if not to_stdout:
             outputs.check_ending(output, source.extensions, f"{source.format} is not converted")
@@ -84,7 +84,7 @@ def deform(
     for sentence in warnings:
         console.warning(sentence)
     result = deformation.deformed(source, control_points, choice, transform, temperature, stages)
-    with stages.stage("writing"):
+    with stages.stage("write"):
         files = _write(source, result, output, force=force)
     told = summary.summary(source, control_points, choice, transform, temperature, result)
     told |= {"output": str(output), "files": files, "warnings": warnings, "seconds": stages.seconds}
@@ -124,12 +124,4 @@ def _write(shape: Shape, result: Deformation, output: Path, *, force: bool) -> l
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()
         return []
-    if shape.format == "glTF" and not force:  # its buffers keep their names, which may be taken, by the input's own
-        for name in shape.encode(result.positions, maps=result.maps)[1]:
-            beside = output.parent / name
-            if beside.exists():
-                raise ArgumentError(
-                    f"{output}: '{beside}', which is written beside it, is there already: "
-                    "write into another folder, or overwrite it with --force"
-                )
-    return [str(path) for path in shape.write(output, result.positions, maps=result.maps)]
+    return [str(path) for path in shape.write(output, result.positions, maps=result.maps, overwrite=force)]

@@ -15,6 +15,8 @@ from neuralmls.errors import FileError
 from neuralmls.shape import Shape
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights
 
+LARGEST = 1e150  # units
+
 
 @dataclass(frozen=True)
 class Deformation:
@@ -41,8 +43,16 @@ def check_size(shape: Shape) -> None:
 
 
 def longest_side(shape: Shape) -> float:
-    """The longest side of the shape's box, in file units."""
+    """The longest side of the shape's box, in file units.
+
+    Raises
+    ------
+    FileError
+        It is so long that squares of lengths overflow.
+    """
     low, high = shape.bounds
+    if (high / LARGEST - low / LARGEST).max() > 1:
+        raise FileError(f"{shape.path}: the shape is more than {LARGEST:g} units long: no coordinates of a real thing")
     return float((high - low).max())
 
 
@@ -55,11 +65,11 @@ def deformed(
     stages: Stages,
 ) -> Deformation:
     """Fit the weights, bind the shape to them, and move the control points to their targets."""
-    with stages.stage("training" if choice.kind == "neural" else "weights") as report:
+    with stages.stage(choice.stage) as report:
         weights = choice.make(points.sources, shape.bounds, report)
-    with stages.stage("binding") as report:
+    with stages.stage("bind") as report:
         deformer = Deformer(shape.positions, weights, transform=transform, progress=report)
-    with stages.stage("moving") as report:
+    with stages.stage("move") as report:
         maps: NDArray[np.float64] | None = None
         if shape.has_normals:
             y, maps = deformer.deform(points.targets, temperature, return_maps=True, progress=report)

@@ -72,10 +72,11 @@ def demo(
 def _draw(shapes: list[Path], points: Path, picture: Path) -> None:
     from neuralmls.control_points import ControlPoints
     from neuralmls.figures.render import Panel, render
+    from neuralmls.samples import make
     from neuralmls.shape import read
 
-    panels = []
+    panels, colours = [], make("chair").colours
     for title, path in zip(["source", *RESULTS], shapes, strict=True):
         shape = read(path)
-        panels.append(Panel(title, shape.positions, shape.faces))
+        panels.append(Panel(title, shape.positions, shape.faces, colours=colours))
     render(panels, picture, control_points=ControlPoints.read(points))

@@ -16,9 +16,11 @@ def inspect(
     json: Annotated[bool, typer.Option("--json", help="As JSON, for machines.")] = False,
 ) -> None:
     """Show what is in a file, and what a deformation will carry over."""
+    from neuralmls.cli.deformation import longest_side
     from neuralmls.shape import read
 
     source = read(shape)
+    longest_side(source)  # refuses what has no size that a number could hold
     low, high = source.bounds.tolist()
     size = [b - a for a, b in zip(low, high, strict=True)]
     told: dict[str, Any] = {

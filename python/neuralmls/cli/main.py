@@ -21,6 +21,9 @@ from neuralmls.errors import ArgumentError, NeuralMLSError
 
 BAD_DATA, WRONG_USE, INTERRUPTED = 1, 2, 130
 
+# All of typer's usage errors are of this class; where it is to be imported from differs between typer's versions.
+UsageError: type[Exception] = typer.BadParameter.__mro__[1]
+
 # Plain help: it starts at once, and is as wide as the terminal wants it.
 app = typer.Typer(
     name="neuralmls",
@@ -68,7 +71,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except NeuralMLSError as error:
         console.error(str(error))
         return BAD_DATA
-    except typer.TyperException as error:
+    except UsageError as error:
         console.error(_usage(error))
         return WRONG_USE
     except KeyboardInterrupt:
@@ -85,9 +88,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return BAD_DATA
 
 
-def _usage(error: typer.TyperException) -> str:
+def _usage(error: Exception) -> str:
     """A usage error of typer's as one sentence, with where to read on."""
-    sentence = error.format_message().rstrip(".").replace("\n", " ")
+    sentence = error.format_message()  # type: ignore[attr-defined]
+    sentence = " ".join(sentence.replace("Value error, ", "").rstrip(".").split())
     context = getattr(error, "ctx", None)
     path = context.command_path if context is not None else "neuralmls"
     return f"{sentence[:1].lower()}{sentence[1:]}; see {path} --help"

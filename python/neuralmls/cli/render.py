@@ -97,9 +97,9 @@ def _weights_of(
         nearest = difflib.get_close_matches(name, points.names, n=1, cutoff=0.0)[0]
         raise ArgumentError(f"--heat: there is no control point '{name}'; the nearest name is '{nearest}'")
     check_size(shape)
-    with stages.stage("training" if choice.kind == "neural" else "weights") as report:
+    with stages.stage(choice.stage) as report:
         function = choice.make(points.sources, shape.bounds, report)
-    with stages.stage("weighing") as report:
+    with stages.stage("bind") as report:
         return softmax(function.logits(shape.positions, progress=report), temperature)[:, points.names.index(name)]
 
 

@@ -64,7 +64,8 @@ def show(told: dict[str, Any], *, everything: bool, file: TextIO) -> None:
             ("control points", f"{len(points):,}, {count:,} of them moved"),
             ("weights", _weights(weights)),
             ("transform", f"{told['transform']}, temperature {told['temperature']:g}"),
-            ("seconds", _seconds(told["seconds"])),
+            ("seconds", ", ".join(f"{name} {value:.2f}" for name, value in told["seconds"].items())),
+            ("", f"{sum(told['seconds'].values()):.2f} in all"),
         ],
         file,
     )
@@ -90,10 +91,6 @@ def _weights(weights: dict[str, Any]) -> str:
     if weights["kind"] == "neural":
         return f"neural, loss {weights['loss']:.3g} after {weights['steps']:,} steps, seed {weights['seed']}"
     return f"inverse-distance, alpha {weights['alpha']:g}, epsilon {weights['epsilon']:g}"
-
-
-def _seconds(seconds: dict[str, float]) -> str:
-    return f"{sum(seconds.values()):.2f}: " + ", ".join(f"{name} {value:.2f}" for name, value in seconds.items())
 
 
 def _length(value: float, side: float) -> str:

@@ -65,6 +65,11 @@ class WeightsChoice:
             if getattr(self, name) is not None:
                 raise ArgumentError(f"--{name} belongs to --weights {other}, but the weights are {self.kind}")
 
+    @property
+    def stage(self) -> str:
+        """The name of the stage in which they are made."""
+        return "train" if self.kind == "neural" else "bind"
+
     def make(
         self, sources: NDArray[np.float64], bounds: NDArray[np.float64], progress: Callable[[float], None]
     ) -> NeuralWeights | InverseDistanceWeights:

@@ -1,8 +1,8 @@
 """Weight functions: each gives logits, and `softmax(logits / T)` are the weights of moving least squares."""
 
+from neuralmls.protocol import Weights
 from neuralmls.weights.inverse_distance import InverseDistanceWeights
 from neuralmls.weights.neural import NeuralWeights
-from neuralmls.protocol import Weights
 from neuralmls.weights.softmax import softmax
 
 __all__ = ["InverseDistanceWeights", "NeuralWeights", "Weights", "softmax"]

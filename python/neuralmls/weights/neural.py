@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from neuralmls import _core
 from neuralmls.arrays import Progress, as_box, as_count, as_number, as_points
 from neuralmls.errors import ArgumentError, FileError
+from neuralmls.point_tree import PointTree
 
 FORMAT = "neuralmls-network-1"
 
@@ -109,13 +110,15 @@ class NeuralWeights:
         return len(self._losses)
 
     def logits(self, x: ArrayLike, *, progress: Progress | None = None) -> NDArray[np.float32]:
-        """Return the logits of the points `x` (n, d): (n, m).
+        """Return the logits of the points `x` (n, d), or of a `PointTree`: (n, m), in the points' own order.
 
         Raises
         ------
         ArgumentError
-            `x` does not hold finite points of the control points' dimension.
+            `x` does not hold finite points of the control points' dimension, or is a tree of another box.
         """
+        if isinstance(x, PointTree):
+            return self._network.logits_of_tree(x._core, progress)
         return self._network.logits(as_points("x", x, self._p.shape[1]), progress)
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -159,14 +162,9 @@ class NeuralWeights:
             with open(path, "rb") as file, np.load(file, allow_pickle=False) as stored:
                 arrays = {name: stored[name] for name in stored.files}
             if str(arrays["format"]) != FORMAT:
-                raise FileError(
-                    f"{path}: expected a network of format '{FORMAT}', found '{arrays['format']}'"
-                )
+                raise FileError(f"{path}: expected a network of format '{FORMAT}', found '{arrays['format']}'")
             p = as_points("control_points", arrays["control_points"])
-            layers = [
-                (_single(arrays[f"weight{index}"], 2), _single(arrays[f"bias{index}"], 1))
-                for index in range(3)
-            ]
+            layers = [(_single(arrays[f"weight{index}"], 2), _single(arrays[f"bias{index}"], 1)) for index in range(3)]
             network = _core.Network(
                 p.shape[1],
                 arrays["centre"].tolist(),
@@ -175,9 +173,7 @@ class NeuralWeights:
                 layers,
             )
             if len(layers[2][1]) != len(p):
-                raise ArgumentError(
-                    f"the network has {len(layers[2][1])} outputs for {len(p)} control points"
-                )
+                raise ArgumentError(f"the network has {len(layers[2][1])} outputs for {len(p)} control points")
             return cls(p, network, arrays["losses"].tolist(), float(arrays["loss"]))
         except FileError:
             raise

@@ -27,7 +27,8 @@ const UNREAD_BEGINNINGS: [(&[u8], &str); 17] = [
 ];
 
 /// The same by their endings, for those whose content does not tell.
-const UNREAD_ENDINGS: [(&str, &str); 7] = [
+const UNREAD_ENDINGS: [(&str, &str); 8] = [
+    ("spz", "an .spz file of Gaussian splats (their PLY files are read)"),
     ("splat", "a .splat file of Gaussian splats (their PLY files are read)"),
     ("ksplat", "a .ksplat file of Gaussian splats (their PLY files are read)"),
     ("pcd", "a PCD point cloud"),
@@ -50,7 +51,10 @@ pub(super) fn sniff(bytes: &[u8], extension: Option<&str>) -> Result<Format, Err
     let extension = extension.as_deref().filter(|e| !e.is_empty());
     let named = extension.and_then(Format::from_extension);
     refuse_unread(bytes)?;
-    match (by_content(bytes, named), named) {
+    let found = by_content(bytes, named);
+    match (found, named) {
+        // Numbers alone may be the content of a format that is not read.
+        (Some(Format::Table), None) if unread_ending(extension).is_some() => Err(unknown(bytes, extension)),
         (Some(found), Some(named)) if found != named => Err(Error::malformed(format!(
             "this is {}, not {}: rename it to .{}",
             with_article(found),
@@ -76,9 +80,13 @@ fn with_article(format: Format) -> &'static str {
     }
 }
 
+fn unread_ending(extension: Option<&str>) -> Option<&'static str> {
+    UNREAD_ENDINGS.iter().find(|(ending, _)| extension == Some(ending)).map(|(_, what)| *what)
+}
+
 /// The sentence for a file that is nothing that we know.
 fn unknown(bytes: &[u8], extension: Option<&str>) -> Error {
-    if let Some((_, what)) = UNREAD_ENDINGS.iter().find(|(ending, _)| extension == Some(ending)) {
+    if let Some(what) = unread_ending(extension) {
         return Error::unsupported(format!("this is {what}, which is not read"));
     }
     let known = Format::ALL.map(Format::name).join(", ");

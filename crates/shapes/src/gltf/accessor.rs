@@ -5,7 +5,7 @@ use super::json::At;
 use crate::error::Error;
 
 /// The type of one number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Component {
     I8,
     U8,

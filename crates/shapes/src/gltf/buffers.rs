@@ -122,7 +122,7 @@ fn relative_path(uri: &At<'_>) -> Result<String, Error> {
     Ok(path)
 }
 
-fn percent_decoded(text: &str) -> Vec<u8> {
+pub(super) fn percent_decoded(text: &str) -> Vec<u8> {
     let bytes = text.as_bytes();
     let hex = |at: usize| bytes.get(at).and_then(|b| (*b as char).to_digit(16)).map(|d| d as u8);
     let (mut out, mut at) = (Vec::with_capacity(bytes.len()), 0);
@@ -139,4 +139,10 @@ fn percent_decoded(text: &str) -> Vec<u8> {
         }
     }
     out
+}
+
+/// A file name as a URI: what is not a letter, a digit or one of `-._~` is encoded.
+pub(super) fn percent_encoded(name: &str) -> String {
+    let plain = |b: &u8| b.is_ascii_alphanumeric() || b"-._~".contains(b);
+    name.bytes().map(|b| if plain(&b) { char::from(b).to_string() } else { format!("%{b:02X}") }).collect()
 }

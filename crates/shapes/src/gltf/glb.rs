@@ -9,14 +9,23 @@ const BIN: u32 = 0x004E_4942;
 
 /// Where things are in a GLB file.
 pub(super) struct Glb {
-    /// The text of the JSON chunk.
-    pub json: Range<usize>,
+    /// The data of the JSON chunk.
+    json: Range<usize>,
     /// The data of the BIN chunk.
     pub bin: Option<Range<usize>>,
     /// Where the file ends by its header; what follows is carried over.
     end: usize,
     /// All chunks in file order, each with its 8 bytes of header.
     chunks: Vec<Range<usize>>,
+}
+
+impl Glb {
+    /// The JSON without what fills up the chunk; some writers fill with zeros instead of spaces.
+    pub fn text<'a>(&self, source: &'a [u8]) -> &'a [u8] {
+        let text = &source[self.json.clone()];
+        let end = text.iter().rposition(|b| *b != 0 && !b.is_ascii_whitespace()).map_or(0, |last| last + 1);
+        &text[..end]
+    }
 }
 
 fn u32_at(source: &[u8], at: usize) -> Option<u32> {

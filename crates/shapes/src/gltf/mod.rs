@@ -13,7 +13,7 @@
 //! | `scene`, `affine` | nodes, skins and their maps into the world |
 //! | `mesh` | primitives and instances: positions and faces |
 //! | `turned` | new positions, normals and tangents in a node's own space |
-//! | `write`, `output` | which accessor gets what; the changed JSON and buffers |
+//! | `write`, `output`, `splice` | which accessor gets what; the changed buffers; the changed text |
 
 mod accessor;
 mod affine;
@@ -25,13 +25,14 @@ mod json;
 mod mesh;
 mod output;
 mod scene;
+mod splice;
 mod turned;
 mod write;
 
 use serde_json::Value;
 
 use self::accessor::{Accessor, View};
-use self::buffers::Buffers;
+use self::buffers::{percent_decoded, Buffers, Origin};
 use self::json::At;
 use self::mesh::{Block, Instance, Primitive};
 use self::scene::{Node, Skin};
@@ -65,7 +66,7 @@ pub(crate) fn read_gltf(source: &[u8], side_files: &SideFiles<'_>) -> Result<Par
 /// Reads a `.glb`.
 pub(crate) fn read_glb(source: &[u8], side_files: &SideFiles<'_>) -> Result<Parsed, Error> {
     let glb = glb::split(source)?;
-    read(source, &source[glb.json], Some(glb.bin.map_or(&[][..], |bin| &source[bin])), side_files)
+    read(source, glb.text(source), Some(glb.bin.map_or(&[][..], |bin| &source[bin])), side_files)
 }
 
 /// The text without a byte order mark.
@@ -92,7 +93,7 @@ fn read(source: &[u8], text: &[u8], bin: Option<&[u8]>, side_files: &SideFiles<'
     let accessors = accessor::read_accessors(&root, &views, room(input, 1))?;
     let meshes = mesh::read_meshes(&root, &accessors)?;
     let nodes = scene::read_nodes(&root, meshes.len(), root.items("skins")?.len())?;
-    let skins = scene::read_skins(&root, &nodes, &accessors, &views, &buffers)?;
+    let skins = scene::read_skins(&root, &nodes, &accessors, &views, &buffers, room(input, 1))?;
     let mut model =
         Model { buffers, views, accessors, meshes, nodes, skins, instances: Vec::new(), blocks: Vec::new() };
     mesh::place(&mut model, room(input, 4))?;
@@ -143,6 +144,16 @@ impl Document for Gltf {
     fn has_normals(&self) -> bool {
         let shown = self.model.instances.iter().flat_map(|i| &self.model.meshes[i.mesh]);
         shown.into_iter().any(|p| p.position.is_some() && (p.normal.is_some() || p.tangent.is_some()))
+    }
+
+    fn named_files(&self) -> Vec<String> {
+        let buffers = self.model.buffers.storages.iter().filter_map(|storage| match &storage.origin {
+            Origin::File(path) => Some(path.clone()),
+            _ => None,
+        });
+        let images = self.json["images"].as_array().into_iter().flatten();
+        let uris = images.filter_map(|image| image["uri"].as_str()).filter(|uri| !uri.starts_with("data:"));
+        buffers.chain(uris.map(|uri| String::from_utf8_lossy(&percent_decoded(uri)).into_owned())).collect()
     }
 
     fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {

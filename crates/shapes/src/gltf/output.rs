@@ -3,17 +3,15 @@
 use std::borrow::Cow;
 
 use base64::Engine;
-use serde::Serialize;
-use serde_json::ser::PrettyFormatter;
-use serde_json::{json, Map, Serializer, Value};
+use serde_json::{json, Map, Value};
 
 use super::accessor::Component;
-use super::buffers::{Origin, BASE64};
+use super::buffers::{percent_encoded, Origin, BASE64};
+use super::splice::splice;
 use super::turned::Content;
-use super::write::bound;
 use super::{glb, without_mark, Gltf};
 use crate::error::Error;
-use crate::shape::Written;
+use crate::shape::{SideFile, Written};
 
 pub(super) struct Output<'a> {
     gltf: &'a Gltf,
@@ -137,22 +135,35 @@ impl<'a> Output<'a> {
             }
             for (k, stored) in bounds.into_iter().enumerate() {
                 if old[k].as_f64() != Some(stored) {
-                    old[k] = bound(stored, whole);
+                    old[k] = if whole { Value::from(stored as i64) } else { Value::from(stored) };
                 }
             }
         }
     }
 
-    /// The file, and the side files that changed.
-    pub fn finish(mut self) -> Result<Written, Error> {
+    /// The file, and the side files that changed, called after `stem` if given.
+    pub fn finish(mut self, stem: Option<&str>) -> Result<Written, Error> {
         let model = &self.gltf.model;
-        let mut side_files = Vec::new();
+        let mut side_files: Vec<SideFile> = Vec::new();
         let mut bin = None;
         for (s, bytes) in std::mem::take(&mut self.storages).into_iter().enumerate() {
             let Cow::Owned(bytes) = bytes else { continue };
             match &model.buffers.storages[s].origin {
                 Origin::Bin => bin = Some(bytes),
-                Origin::File(path) => side_files.push((path.clone(), bytes)),
+                Origin::File(path) => {
+                    let name = match stem {
+                        None => path.clone(),
+                        Some(stem) if side_files.is_empty() => format!("{stem}.bin"),
+                        Some(stem) => format!("{stem}-{}.bin", side_files.len() + 1),
+                    };
+                    if name != *path {
+                        for (b, _) in model.buffers.buffers.iter().enumerate().filter(|(_, b)| b.storage == s)
+                        {
+                            self.array("buffers")[b]["uri"] = percent_encoded(&name).into();
+                        }
+                    }
+                    side_files.push(SideFile { name, was: path.clone(), bytes });
+                }
                 Origin::Embedded(head) => {
                     let uri = format!("{head}{}", BASE64.encode(&bytes));
                     let buffer = model.buffers.buffers.iter().position(|b| b.storage == s);
@@ -167,42 +178,15 @@ impl<'a> Output<'a> {
         let same = self.json == self.gltf.json;
         let bytes = if self.gltf.binary {
             let glb = glb::split(self.source)?;
-            let text = (!same).then(|| serialised(&self.json, &self.source[glb.json.clone()]));
+            let text = (!same).then(|| splice(glb.text(self.source), &self.json));
             glb::join(&glb, self.source, text.as_deref(), bin.as_deref())?
         } else if same {
             self.source.to_vec()
         } else {
-            serialised(&self.json, self.source)
+            let text = without_mark(self.source);
+            let mark = &self.source[..self.source.len() - text.len()];
+            [mark, &splice(text, &self.json)].concat()
         };
         Ok(Written { bytes, side_files })
     }
-}
-
-/// JSON as text, indented as `like` is, with its line ends, and with what is before and behind it.
-fn serialised(json: &Value, like: &[u8]) -> Vec<u8> {
-    let text = without_mark(like);
-    let mark = &like[..like.len() - text.len()];
-    let trimmed = text.trim_ascii_end();
-    let mut out = Vec::with_capacity(text.len());
-    match indentation(text) {
-        None => serde_json::to_writer(&mut out, json).expect("a Value can be written to memory"),
-        Some(indent) => {
-            let mut to = Serializer::with_formatter(&mut out, PrettyFormatter::with_indent(indent));
-            json.serialize(&mut to).expect("a Value can be written to memory");
-            if trimmed.windows(2).any(|pair| pair == b"\r\n") {
-                // Within strings, line ends are escaped.
-                let lines: Vec<&[u8]> = out.split(|b| *b == b'\n').collect();
-                out = lines.join(&b"\r\n"[..]);
-            }
-        }
-    }
-    [mark, &out, &text[trimmed.len()..]].concat()
-}
-
-/// The white space before the first key, if that has its own line.
-fn indentation(text: &[u8]) -> Option<&[u8]> {
-    let rest = text.trim_ascii_start().strip_prefix(b"{")?;
-    let space = &rest[..rest.len() - rest.trim_ascii_start().len()];
-    let line = space.iter().rposition(|b| *b == b'\n')?;
-    Some(&space[line + 1..])
 }

@@ -86,8 +86,9 @@ pub(super) fn read_skins(
     accessors: &[Accessor],
     views: &[View],
     buffers: &Buffers,
+    room: usize,
 ) -> Result<Vec<Skin>, Error> {
-    let mut skins = Vec::new();
+    let (mut skins, mut matrices) = (Vec::new(), 0usize);
     for at in root.items("skins")? {
         let joints = at.items("joints")?;
         let bind = match at.index_of("inverseBindMatrices", accessors.len(), "accessors")? {
@@ -101,6 +102,12 @@ pub(super) fn read_skins(
                 }
                 if accessor.count < joints.len() {
                     return wrong(&format!("holds {} matrices for {} joints", accessor.count, joints.len()));
+                }
+                matrices = matrices.saturating_add(accessor.count);
+                if matrices > room {
+                    return Err(Error::unsupported(
+                        "the skins have too many matrices for a file of this size",
+                    ));
                 }
                 Some((accessor, accessor.packed(a, views, buffers)?))
             }

@@ -5,14 +5,14 @@ use super::affine::{self, Affine};
 use super::mesh::{Block, Placement};
 use super::Model;
 use crate::document::Moved;
-use crate::error::{Error, ErrorKind};
+use crate::error::Error;
 use crate::normals::{apply, length, map_at, turn};
 
 /// How far a position may be rounded to stay quantised, as a part of the mesh's longest side. Shorts are far below it.
 const COARSEST_ROUNDING: f64 = 1e-3;
 
 /// The elements of an accessor, one after another.
-#[derive(PartialEq, Eq)]
+#[derive(PartialEq, Eq, Hash)]
 pub(super) struct Content {
     pub component: Component,
     pub bytes: Vec<u8>,
@@ -68,11 +68,10 @@ impl Model {
                 position = std::array::from_fn(|k| position[k] + by[k]);
             }
             if position.iter().any(|c| !(*c as f32).is_finite()) {
-                return Err(Error {
-                    kind: ErrorKind::Argument,
-                    place: None,
-                    message: format!("position {} is too far out for glTF's 32-bit floats", block.first + i),
-                });
+                let position = block.first + i;
+                return Err(Error::argument(format!(
+                    "position {position} is too far out for glTF's 32-bit floats"
+                )));
             }
             now.push(position);
         }
@@ -116,7 +115,11 @@ impl Model {
                 let square: f64 = n.iter().map(|c| c * c).sum();
                 if square > 0.0 {
                     let part = (0..3).map(|k| n[k] * along[k]).sum::<f64>() / square;
-                    along = std::array::from_fn(|k| along[k] - part * n[k]);
+                    let across: [f64; 3] = std::array::from_fn(|k| along[k] - part * n[k]);
+                    // A tangent along the normal (some exporters write such) has no direction across it.
+                    if length(across) > 1e-3 * length(along) {
+                        along = across;
+                    }
                 }
             }
             let scale = length(t) / length(along);

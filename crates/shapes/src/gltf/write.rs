@@ -5,8 +5,7 @@
 //! an accessor the first new *version* takes its place if no use wants it as it was; the others become new accessors.
 
 use std::collections::HashMap;
-
-use serde_json::Value;
+use std::rc::Rc;
 
 use super::accessor::Reach;
 use super::json::At;
@@ -24,7 +23,7 @@ const ATTRIBUTES: [&str; 3] = ["POSITION", "NORMAL", "TANGENT"];
 type Form = Vec<[Option<usize>; 3]>;
 
 /// The new elements of each accessor.
-type Versions = HashMap<usize, Vec<Content>>;
+type Versions = HashMap<usize, Vec<Rc<Content>>>;
 
 fn accessors_of(primitive: &Primitive) -> [Option<usize>; 3] {
     [primitive.position, primitive.normal, primitive.tangent]
@@ -32,16 +31,18 @@ fn accessors_of(primitive: &Primitive) -> [Option<usize>; 3] {
 
 pub(super) fn write(gltf: &Gltf, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {
     let model = &gltf.model;
-    let mut planner = Planner { model, moved, versions: Versions::new(), known: HashMap::new() };
+    let mut planner =
+        Planner { model, moved, versions: Versions::new(), known: HashMap::new(), numbers: HashMap::new() };
     let mut forms: Vec<Vec<Form>> = model.meshes.iter().map(|_| Vec::new()).collect();
+    let mut form_numbers: HashMap<(usize, Form), usize> = HashMap::new();
     let mut form_of_instance = Vec::with_capacity(model.instances.len());
     for instance in &model.instances {
         let form = planner.form(instance)?;
         let known = &mut forms[instance.mesh];
-        form_of_instance.push(known.iter().position(|f| *f == form).unwrap_or(known.len()));
-        if form_of_instance.last() == Some(&known.len()) {
+        form_of_instance.push(*form_numbers.entry((instance.mesh, form.clone())).or_insert_with(|| {
             known.push(form);
-        }
+            known.len() - 1
+        }));
     }
     let versions = planner.versions;
     let kept = kept(gltf, &forms)?;
@@ -53,11 +54,15 @@ pub(super) fn write(gltf: &Gltf, source: &[u8], moved: &Moved<'_>) -> Result<Wri
     let mut changed: Vec<_> = versions.iter().collect();
     changed.sort_unstable_by_key(|(accessor, _)| **accessor);
     for (&accessor, contents) in changed {
-        for (version, content) in contents.iter().enumerate() {
-            let own = version == 0 && !kept[accessor];
-            let index = if own { accessor } else { output.copy("accessors", accessor) };
+        // Copies are made before the original changes, perhaps to another component type.
+        let own = |version: usize| version == 0 && !kept[accessor];
+        let indices: Vec<usize> = (0..contents.len())
+            .map(|version| if own(version) { accessor } else { output.copy("accessors", accessor) })
+            .collect();
+        for (version, (content, index)) in contents.iter().zip(indices).enumerate() {
             let old = &model.accessors[accessor];
-            if own && old.component == content.component && !shared[accessor] && old.sparse.is_none() {
+            if own(version) && old.component == content.component && !shared[accessor] && old.sparse.is_none()
+            {
                 output.overwrite(accessor, content);
             } else {
                 output.append(index, accessor, content);
@@ -90,7 +95,7 @@ pub(super) fn write(gltf: &Gltf, source: &[u8], moved: &Moved<'_>) -> Result<Wri
             output.json["nodes"][instance.node]["mesh"] = entries[instance.mesh][form].into();
         }
     }
-    output.finish()
+    output.finish(moved.stem)
 }
 
 struct Planner<'a> {
@@ -99,6 +104,8 @@ struct Planner<'a> {
     versions: Versions,
     /// The version of (block, accessor, accessor of the normals), once found.
     known: HashMap<(usize, usize, Option<usize>), Option<usize>>,
+    /// The number of each version of an accessor by what it holds.
+    numbers: HashMap<(usize, Rc<Content>), usize>,
 }
 
 impl Planner<'_> {
@@ -149,8 +156,9 @@ impl Planner<'_> {
             return Ok(*known);
         }
         let version = make(&self.versions)?.map(|content| {
-            let all = self.versions.entry(key.1).or_default();
-            all.iter().position(|c| *c == content).unwrap_or_else(|| {
+            let content = Rc::new(content);
+            *self.numbers.entry((key.1, Rc::clone(&content))).or_insert_with(|| {
+                let all = self.versions.entry(key.1).or_default();
                 all.push(content);
                 all.len() - 1
             })
@@ -233,13 +241,4 @@ fn shared(gltf: &Gltf) -> Result<Vec<bool>, Error> {
         }
     }
     Ok(shared)
-}
-
-/// A number in JSON for what an accessor stores: exact, whole ones without a point.
-pub(super) fn bound(stored: f64, whole: bool) -> Value {
-    if whole {
-        Value::from(stored as i64)
-    } else {
-        Value::from(stored)
-    }
 }

@@ -30,7 +30,7 @@ impl Corner {
     }
 }
 
-/// A whole number with or without a sign, up to 12 digits.
+/// A whole number with or without a sign, up to 12 digits. (`str::parse` would check the text as UTF-8 first.)
 #[inline]
 fn whole(word: &[u8]) -> Option<i64> {
     let (negative, digits) = match word {

@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::number;
 use crate::text::quote;
 use corner::Corner;
-use statements::{Statement, Statements};
+use statements::{Statement, Statements, Words};
 use tally::Tally;
 use write::Obj;
 
@@ -31,6 +31,8 @@ struct Reader {
     furthest: Option<(u32, u64)>,
     /// The highest normal that a face names, from 0.
     furthest_normal: Option<u32>,
+    /// What `mtllib` statements name.
+    libraries: Vec<String>,
     /// Whether something names normals that cannot be renumbered.
     fixed_normals: bool,
 }
@@ -44,13 +46,18 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
             tally.comment_or_blank(&statement);
             continue;
         };
+        let rest = keyword.end;
         match &statement.bytes[keyword] {
-            b"v" => tally.position(reader.position(&statement)?),
+            b"v" => tally.position(reader.position(&statement, words)?),
             b"vn" => reader.normals += 1,
-            b"f" | b"fo" => tally.faces.add(reader.face(&statement)?),
+            b"f" | b"fo" => tally.faces.add(reader.face(&statement, words)?),
             other => {
                 // Surfaces name normals too.
                 reader.fixed_normals |= other == b"surf";
+                if other == b"mtllib" {
+                    let names = statement.bytes[rest..].trim_ascii();
+                    reader.libraries.push(String::from_utf8_lossy(names).into_owned());
+                }
                 tally.statement(other, &statement);
             }
         }
@@ -67,6 +74,7 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
         decimals: reader.decimals,
         has_normals: reader.normals > 0,
         may_split: in_range && !reader.fixed_normals,
+        libraries: reader.libraries,
         by_vertex: reader.normals == count && reader.furthest_normal.is_none() && !reader.fixed_normals,
     };
     Ok(Parsed {
@@ -79,9 +87,8 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
 }
 
 impl Reader {
-    /// Reads a `v` and returns how many numbers it has.
-    fn position(&mut self, statement: &Statement<'_>) -> Result<usize, Error> {
-        let mut words = statement.words().skip(1);
+    /// Reads a `v`, whose `words` follow, and returns how many numbers it has.
+    fn position(&mut self, statement: &Statement<'_>, mut words: Words<'_>) -> Result<usize, Error> {
         for k in 0..3 {
             let word = words.next().map(|range| &statement.bytes[range]).ok_or_else(|| {
                 Error::at_line(statement.line, format!("expected a position of three numbers, found {k}"))
@@ -98,10 +105,10 @@ impl Reader {
         Ok(3 + words.count())
     }
 
-    /// Reads an `f` and returns how many corners it has.
-    fn face(&mut self, statement: &Statement<'_>) -> Result<usize, Error> {
+    /// Reads an `f`, whose `words` follow, and returns how many corners it has.
+    fn face(&mut self, statement: &Statement<'_>, words: Words<'_>) -> Result<usize, Error> {
         let (mut first, mut previous, mut corners) = (0, 0, 0);
-        for range in statement.words().skip(1) {
+        for range in words {
             let word = &statement.bytes[range];
             let wrong = |what: String| Error::at_line(statement.line, what);
             let corner = Corner::parse(word).ok_or_else(|| {

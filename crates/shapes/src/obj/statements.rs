@@ -64,13 +64,43 @@ pub(super) struct Words<'a> {
     at: usize,
 }
 
+/// What a byte is between or within words.
+#[derive(Clone, Copy, PartialEq)]
+enum Class {
+    Word,
+    Gap,
+    Comment,
+    /// A gap before a line's end, which it joins with the next; else part of a word.
+    Backslash,
+}
+
+/// A table, since this is what reading a large file spends its time on.
+const CLASSES: [Class; 256] = {
+    let mut classes = [Class::Word; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        classes[byte] = match byte as u8 {
+            b'#' => Class::Comment,
+            b'\\' => Class::Backslash,
+            white if white.is_ascii_whitespace() => Class::Gap,
+            _ => Class::Word,
+        };
+        byte += 1;
+    }
+    classes
+};
+
 impl Words<'_> {
-    /// Whether the byte there stands between words: white space, or a `\` that joins lines.
+    /// The class of the byte that is next; a comment at the end.
     #[inline]
-    fn is_gap(&self, at: usize) -> bool {
-        let byte = self.bytes[at];
-        byte.is_ascii_whitespace()
-            || byte == b'\\' && self.bytes.get(at + 1).is_none_or(|&next| matches!(next, b'\n' | b'\r'))
+    fn class(&self) -> Class {
+        match self.bytes.get(self.at).map_or(Class::Comment, |&byte| CLASSES[byte as usize]) {
+            Class::Backslash => match self.bytes.get(self.at + 1) {
+                None | Some(b'\n' | b'\r') => Class::Gap,
+                Some(_) => Class::Word,
+            },
+            class => class,
+        }
     }
 }
 
@@ -79,14 +109,13 @@ impl Iterator for Words<'_> {
 
     #[inline]
     fn next(&mut self) -> Option<Range<usize>> {
-        while self.at < self.bytes.len() && self.is_gap(self.at) {
+        while self.class() == Class::Gap {
             self.at += 1;
         }
         let from = self.at;
-        while self.at < self.bytes.len() && self.bytes[self.at] != b'#' && !self.is_gap(self.at) {
+        while self.class() == Class::Word {
             self.at += 1;
         }
-        // Nothing before the end or a comment.
         (self.at > from).then_some(from..self.at)
     }
 }

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::ops::Range;
 
 use super::corner::{self, Corner};
-use super::statements::{Statement, Statements};
+use super::statements::{Statement, Statements, Words};
 use super::turned::{turn, Turned};
 use crate::document::{Document, Moved};
 use crate::error::Error;
@@ -18,6 +18,8 @@ pub(super) struct Obj {
     pub has_normals: bool,
     /// Whether a normal may become several, which renumbers those that follow.
     pub may_split: bool,
+    /// What `mtllib` statements name: one file, or several with spaces between them.
+    pub libraries: Vec<String>,
     /// Whether normal i belongs to position i (a point cloud).
     pub by_vertex: bool,
 }
@@ -25,6 +27,11 @@ pub(super) struct Obj {
 impl Document for Obj {
     fn has_normals(&self) -> bool {
         self.has_normals
+    }
+
+    fn named_files(&self) -> Vec<String> {
+        let words = self.libraries.iter().flat_map(|line| line.split_ascii_whitespace());
+        words.chain(self.libraries.iter().map(String::as_str)).map(String::from).collect()
     }
 
     fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {
@@ -42,11 +49,12 @@ impl Document for Obj {
         };
         let renumbered = turned.as_ref().filter(|turned| turned.corners.is_some());
         for statement in Statements::new(source) {
-            let Some(keyword) = statement.words().next() else { continue };
+            let mut words = statement.words();
+            let Some(keyword) = words.next() else { continue };
             match (&statement.bytes[keyword], &turned, renumbered) {
-                (b"v", _, _) => writer.position(&statement, moved),
-                (b"vn", Some(turned), _) => writer.normal(&statement, turned),
-                (b"f" | b"fo", _, Some(turned)) => writer.face(&statement, turned),
+                (b"v", _, _) => writer.position(&statement, words, moved),
+                (b"vn", Some(turned), _) => writer.normal(&statement, words, turned),
+                (b"f" | b"fo", _, Some(turned)) => writer.face(&statement, words, turned),
                 _ => {}
             }
         }
@@ -73,24 +81,23 @@ impl Writer<'_> {
         }
     }
 
-    fn position(&mut self, statement: &Statement<'_>, moved: &Moved<'_>) {
+    fn position(&mut self, statement: &Statement<'_>, words: Words<'_>, moved: &Moved<'_>) {
         let at = 3 * self.position;
         self.position += 1;
         if moved.before[at..at + 3] == moved.after[at..at + 3] {
             return;
         }
-        for (k, word) in statement.words().skip(1).take(3).enumerate() {
+        for (k, word) in words.take(3).enumerate() {
             self.put(statement, word, moved.before[at + k], moved.after[at + k], self.style);
         }
     }
 
     /// Replaces a normal, and adds a line for each further one that it became.
-    fn normal(&mut self, statement: &Statement<'_>, turned: &Turned) {
+    fn normal(&mut self, statement: &Statement<'_>, mut words: Words<'_>, turned: &Turned) {
         let range = turned.first[self.normal] as usize..turned.first[self.normal + 1] as usize;
         self.normal += 1;
         let mut now = turned.normals[range].iter().flatten();
         let Some(first) = now.next() else { return };
-        let mut words = statement.words().skip(1);
         let Some(words) = (|| Some([words.next()?, words.next()?, words.next()?]))() else { return };
         let style = Style::for_normal(words.each_ref().map(|word| &statement.bytes[word.clone()]));
         for (word, is) in words.into_iter().zip(first) {
@@ -109,11 +116,11 @@ impl Writer<'_> {
     }
 
     /// Renumbers the normals of a face.
-    fn face(&mut self, statement: &Statement<'_>, turned: &Turned) {
+    fn face(&mut self, statement: &Statement<'_>, words: Words<'_>, turned: &Turned) {
         let chosen = turned.corners.as_deref().unwrap_or_default();
         // As many normals are in the new file up to here.
         let count = i64::from(turned.first[self.normal]);
-        for word in statement.words().skip(1) {
+        for word in words {
             let corner = Corner::parse(&statement.bytes[word.clone()]);
             let Some((number, place)) = corner.and_then(|corner| corner.normal) else { continue };
             if corner::resolve(number, self.normal).is_none() {

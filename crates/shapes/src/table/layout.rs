@@ -146,7 +146,9 @@ impl Layout {
             _ => numeric.iter().copied().take(3).collect(),
         };
         if let (Some(x), Some(y), Some(z)) = (find("nx"), find("ny"), find("nz")) {
-            self.normal = Some([x, y, z]).filter(|_| self.position.len() == 3);
+            // Without names for the position, these may be among the columns taken for it.
+            let apart = [x, y, z].iter().all(|column| !self.position.contains(column));
+            self.normal = Some([x, y, z]).filter(|_| apart && self.position.len() == 3);
         }
         if let Some(column) = self.position.iter().find(|column| !numeric.contains(column)) {
             return Err(Error::at_line(self.line, format!("expected a number in column {}", column + 1)));

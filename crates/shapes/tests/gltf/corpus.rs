@@ -46,8 +46,8 @@ fn outcome(path: &Path) -> String {
 
     let after = bent(before);
     let written = shape.write(&after, None).unwrap();
-    let changed = |name: &str| match written.side_files.iter().find(|(file, _)| file == name) {
-        Some((_, bytes)) => Ok(bytes.clone()),
+    let changed = |name: &str| match written.side_files.iter().find(|file| file.was == name) {
+        Some(file) => Ok(file.bytes.clone()),
         None => beside(name),
     };
     let again = Shape::read(written.bytes.clone(), format, &changed).unwrap();

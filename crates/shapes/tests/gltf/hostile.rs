@@ -4,7 +4,7 @@ use neuralmls_shapes::{Format, Shape};
 use proptest::prelude::*;
 use serde_json::{json, Value};
 
-use crate::builder::{bent, glb, no_files, read_glb, Builder};
+use crate::builder::{bent, glb, moved, no_files, read_glb, Builder};
 
 #[test]
 fn counts_without_bytes_behind_them_are_refused() {
@@ -146,4 +146,20 @@ proptest! {
 #[test]
 fn the_file_for_mutations_is_itself_read() {
     assert_eq!(read_glb(&rich().glb()).unwrap().positions().len(), 18);
+}
+
+#[test]
+fn thousands_of_instances_that_move_apart_each_keep_their_place() {
+    let mut b = Builder::new();
+    let position = b.floats("VEC3", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    b.mesh(json!({ "attributes": { "POSITION": position } }));
+    let nodes: Vec<Value> = (0..5_000).map(|i| json!({ "mesh": 0, "translation": [i, 0, 0] })).collect();
+    b.json["nodes"] = nodes.into();
+    b.json.as_object_mut().unwrap().remove("scenes");
+    let shape = b.read();
+    // Instances 10 k and 10 k + 1 move alike.
+    let lift = |i: usize| if i / 9 % 10 == 1 { i / 9 - 1 } else { i / 9 } as f64;
+    let after: Vec<f64> = shape.positions().iter().enumerate().map(|(i, c)| c + lift(i)).collect();
+    let (_, new) = moved(&shape, &after, None, 1e-2);
+    assert_eq!(new.json["meshes"].as_array().unwrap().len(), 4_500);
 }

@@ -1,6 +1,6 @@
 //! Moved positions come back from the written file, and nothing else changes.
 
-use neuralmls_shapes::{Format, Shape};
+use neuralmls_shapes::{Format, Shape, SideFile};
 use serde_json::{json, Value};
 
 use crate::builder::{bent, glb, le, moved, no_files, parts, read_glb, Builder, Parts};
@@ -382,7 +382,7 @@ fn changed_buffers_beside_the_file_are_given_back_by_their_path() {
     let shape = Shape::read(text.into_bytes(), Format::Gltf, &|_| Ok(b.bin.clone())).unwrap();
     let after = bent(shape.positions());
     let written = shape.write(&after, None).unwrap();
-    let [(path, bytes)] = &written.side_files[..] else { panic!("one side file") };
+    let [SideFile { name: path, bytes, .. }] = &written.side_files[..] else { panic!("one side file") };
     assert_eq!((path.as_str(), bytes.len()), ("my shape.bin", b.bin.len()));
     let again = Shape::read(written.bytes, Format::Gltf, &|_| Ok(bytes.clone())).unwrap();
     assert!(after.iter().zip(again.positions()).all(|(a, b)| (a - b).abs() < 1e-6));

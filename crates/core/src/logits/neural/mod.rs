@@ -6,6 +6,7 @@
 mod adam;
 mod features;
 mod gemm;
+mod hidden;
 mod initialise;
 mod network;
 mod train;

@@ -55,7 +55,7 @@ impl Network {
     ) -> Result<Network, Error> {
         check_points("network", &[], dim)?;
         let mut inputs = features::width(dim, &frequencies);
-        let whole = frequencies.len() % dim == 0;
+        let whole = frequencies.len().is_multiple_of(dim);
         for (index, layer) in layers.iter().enumerate() {
             if !whole || layer.bias.is_empty() || layer.weight.len() != layer.bias.len() * inputs {
                 return Err(Error::argument(

@@ -3,6 +3,7 @@
 use super::super::moments::Moments;
 use super::super::{matrix, Handles, Local};
 use super::*;
+use crate::simd::loops;
 use crate::softmax::{relative_weights, PackedWeights};
 
 const ALL: [Transform; 3] = [Transform::Rigid, Transform::Similarity, Transform::Affine];
@@ -42,7 +43,7 @@ fn compare(
         })
         .collect();
     let mut worst = Worst::default();
-    for simd in crate::simd::loops::all() {
+    for simd in loops::all() {
         let mut lanes = handles.lanes(Frame::IDENTITY).unwrap();
         lanes.simd = simd;
         let (mut y, mut maps) = (vec![0.0; 3 * n], vec![0.0; 9 * n]);
@@ -109,40 +110,151 @@ impl Random {
     }
 }
 
+/// Points, control points, and logits for them.
+struct Given {
+    x: Points,
+    p: Points,
+    logits: Vec<f32>,
+    random: Random,
+}
+
+impl Given {
+    fn new(m: usize, n: usize, spread: f64) -> Given {
+        let mut random = Random(m as u64);
+        Given { x: random.points(n), p: random.points(m), logits: random.logits(n * m, spread), random }
+    }
+
+    /// Where the control points go, each by `f` of its place and of noise in [-1, 1).
+    fn moved(&mut self, f: impl Fn([f64; 3], [f64; 3]) -> [f64; 3]) -> Points {
+        self.p.iter().map(|p| f(*p, std::array::from_fn(|_| self.random.next()))).collect()
+    }
+}
+
+/// Asserts that positions differ by at most `position` and rotations by at most `turn`; gives the share of unsound lanes.
+fn assert_close(given: &Given, q: &Points, t: f64, transform: Transform, position: f64, turn: f64) -> f64 {
+    let worst = compare(&given.x, &given.p, q, &given.logits, t, transform);
+    let case = format!("{} control points, {transform:?}, T = {t}: {worst:?}", given.p.len());
+    assert!(worst.position <= position && worst.turn <= turn, "{case}");
+    worst.unsound as f64 / (given.x.len() * loops::all().count()) as f64
+}
+
 #[test]
-fn explore() {
-    let mut random = Random(1);
-    for m in [2, 3, 4, 7, 10, 30, 200, 1000] {
-        for transform in ALL {
-            for t in TEMPERATURES {
-                let n = 130;
-                let (x, p, q) = (random.points(n), random.points(m), random.points(m));
-                let logits = random.logits(n * m, 15.0);
-                let mirror: Points = p.iter().map(|p| [-p[0], p[1], p[2]]).collect();
-                let noisy: Points = mirror.iter().map(|p| p.map(|c| c + 1e-2 * random.next())).collect();
-                let close: Points = p.iter().map(|p| p.map(|c| c + 1e-2 * random.next())).collect();
-                let flat: Points = p.iter().map(|p| [p[0], p[1], 0.0]).collect();
-                let line: Points = p.iter().map(|p| [p[0], 2.0 * p[0], 0.3 * p[0]]).collect();
-                let tiny: Points = p.iter().map(|p| p.map(|c| 1e-3 * c)).collect();
-                for (name, p, q) in [
-                    ("random", &p, &q),
-                    ("mirror", &p, &mirror),
-                    ("noisy mirror", &p, &noisy),
-                    ("close", &p, &close),
-                    ("flat", &flat, &q),
-                    ("both flat", &flat, &flat),
-                    ("line", &line, &q),
-                    ("from flat", &q, &flat),
-                    ("to line", &q, &line),
-                    ("tiny", &tiny, &q),
-                    ("both tiny", &tiny, &tiny),
-                ] {
-                    let w = compare(&x, p, q, &logits, t, transform);
-                    if w.position > 1e-6 || w.turn > 2e-6 || w.unsound > 20 {
-                        println!("{m} {transform:?} T {t} {name}: {w:?}");
-                    }
+fn lanes_agree_with_the_twin_for_any_targets_and_temperature() {
+    for m in [2, 3, 4, 7, 10, 40, 300, 1000] {
+        let mut given = Given::new(m, 130, 15.0);
+        let anywhere = given.moved(|_, noise| noise);
+        let near = given.moved(|p, noise| std::array::from_fn(|k| p[k] + 0.1 * noise[k]));
+        for t in TEMPERATURES {
+            for q in [&anywhere, &near] {
+                for transform in [Transform::Rigid, Transform::Similarity] {
+                    let unsound = assert_close(&given, q, t, transform, 3e-6, 1e-6);
+                    assert!(unsound < 0.2, "{m} control points, T = {t}: {unsound}");
                 }
+            }
+            assert_close(&given, &near, t, Transform::Affine, 1e-5, 0.0);
+        }
+    }
+}
+
+#[test]
+fn mirrored_targets_agree_at_every_gap() {
+    for noise in [0.0, 1e-6, 1e-4, 1e-3, 1e-2] {
+        for m in [4, 5, 10, 30] {
+            let mut given = Given::new(m, 200, 15.0);
+            let q = given.moved(|p, e| [noise * e[0] - p[0], p[1] + noise * e[1], p[2] + noise * e[2]]);
+            for t in TEMPERATURES {
+                assert_close(&given, &q, t, Transform::Rigid, 2e-6, 1e-6);
+                assert_close(&given, &q, t, Transform::Similarity, 2e-6, 1e-6);
             }
         }
     }
+}
+
+#[test]
+fn low_temperatures_where_one_weight_dominates_stay_in_lanes() {
+    let mut given = Given::new(10, 500, 15.0);
+    let q = given.moved(|p, noise| std::array::from_fn(|k| p[k] + 0.3 * noise[k]));
+    for t in [0.3, 0.1, 0.02, 0.01] {
+        let unsound = assert_close(&given, &q, t, Transform::Rigid, 1e-6, 1e-6);
+        assert!(unsound < 0.01, "T = {t}: {unsound}");
+    }
+}
+
+#[test]
+fn control_points_on_a_plane_a_line_or_in_one_place_agree() {
+    let shapes: [fn([f64; 3]) -> [f64; 3]; 4] = [
+        |p| [p[0], p[1], 0.0],
+        |p| [p[0], 2.0 * p[0], 0.3 * p[0]],
+        |_| [0.25; 3],
+        |p| if p[0] > 0.0 { [0.5; 3] } else { p },
+    ];
+    for shape in shapes {
+        for m in [2, 3, 6, 20] {
+            let mut given = Given::new(m, 130, 5.0);
+            let spread = given.moved(|_, noise| noise);
+            given.p = given.moved(|p, _| shape(p));
+            let along = given.moved(|p, noise| std::array::from_fn(|k| 1.2 * p[k] + 0.1 * shape(noise)[k]));
+            for t in TEMPERATURES {
+                for transform in [Transform::Rigid, Transform::Similarity] {
+                    assert_close(&given, &spread, t, transform, 5e-5, 1e-6);
+                    assert_close(&given, &along, t, transform, 5e-5, 1e-6);
+                }
+                assert_close(&given, &along, t, Transform::Affine, 5e-5, 0.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn targets_in_one_place_or_on_a_line_agree() {
+    for m in [3, 10] {
+        let mut given = Given::new(m, 130, 10.0);
+        let (place, line) = (given.moved(|_, _| [0.5; 3]), given.moved(|_, e| [e[0], -e[0], 0.5]));
+        for t in TEMPERATURES {
+            for transform in ALL {
+                assert_close(&given, &place, t, transform, 1e-6, 1e-6);
+                assert_close(&given, &line, t, transform, 5e-5, 1e-6);
+            }
+        }
+    }
+}
+
+#[test]
+fn points_on_control_points_go_where_those_go() {
+    let mut given = Given::new(8, 64, 5.0);
+    let q = given.moved(|p, noise| std::array::from_fn(|k| p[k] + 0.3 * noise[k]));
+    for i in 0..64 {
+        given.x[i] = given.p[i % 8];
+        given.logits[8 * i + i % 8] = f32::INFINITY;
+    }
+    for t in TEMPERATURES {
+        for transform in ALL {
+            assert_close(&given, &q, t, transform, 1e-6, 1e-6);
+        }
+        let lanes = Handles::new(&given.p, &q, Transform::Rigid).lanes(Frame::IDENTITY).unwrap();
+        let mut y = vec![0.0; 3 * 64];
+        let points = BatchPoints { x: given.x.as_flattened(), y: &mut y, maps: &mut [] };
+        lanes.deform(PackedWeights::new(&given.logits, 8, t, None).blocks(0), points, &mut Scratch::new());
+        for (i, y) in y.chunks(3).enumerate() {
+            assert!(y.iter().zip(q[i % 8]).all(|(a, b)| (a - b).abs() < 1e-12), "T = {t}: {y:?}");
+        }
+    }
+}
+
+#[test]
+fn lanes_that_nothing_determines_are_left_to_the_twin() {
+    let one = Given::new(1, 20, 1.0);
+    assert_eq!(assert_close(&one, &vec![[0.5; 3]], 1.0, Transform::Rigid, 0.0, 0.0), 1.0);
+    // A mirror of points all around leaves two turns open.
+    let mut given = Given::new(6, 20, 0.0);
+    given.p = vec![
+        [1.0, 0.0, 0.0],
+        [-1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, -1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [0.0, 0.0, -1.0],
+    ];
+    let q = given.moved(|p, _| [-p[0], p[1], p[2]]);
+    assert_eq!(assert_close(&given, &q, 1.0, Transform::Rigid, 0.0, 0.0), 1.0);
 }

@@ -1,0 +1,145 @@
+"""Bad input: one sentence, exit code 2 for wrong use and 1 for bad data, nothing written."""
+
+from __future__ import annotations
+
+import pytest
+
+PLY = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+HEADER = "name,x,y,z\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("empty.obj", "", ("empty.obj", "empty")),
+        ("truncated.ply", PLY + "0 0 0\n1 1", ("truncated.ply", "2 rows")),
+        ("truncated.obj", "v 0 0 0\nv 1 0 0\nv 1 1", ("line 3",)),
+        ("really-a-ply.obj", PLY + "0 0 0\n1 1 1\n", ("PLY", "OBJ")),
+        ("unknown.docx", "hello", (".docx",)),
+        ("no-vertices.obj", "o nothing\n", ("no vertices",)),
+        ("nan.obj", "v 0 0 0\nv 0 nan 0\n", ("line 2", "nan")),
+        ("infinite.obj", "v 0 0 0\nv 0 1e999 0\n", ("line 2", "1e999")),
+        ("face.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 7\n", ("line 4", "7", "3")),
+        ("one-place.obj", "v 1 1 1\nv 1 1 1\n", ("all 2 vertices", "one place")),
+        ("huge.obj", "v -1e308 0 0\nv 1e308 0 0\nv 0 1 0\nf 1 2 3\n", ("1e+150 units",)),
+        ("one.xyz", "0 0 0\n", ("only one vertex",)),
+    ],
+)
+def test_bad_shapes(refused, here, name, text, words):
+    (here / name).write_text(text)
+    output = "out" + name[name.rindex(".") :]
+    refused(1, "deform", name, "--points", "points.csv", "-o", output, words=(name, *words))
+    if "place" not in name and name != "one.xyz":  # which hold enough to be looked at
+        refused(1, "inspect", name, words=(name, *words))
+    refused(1, "points", name, "-o", "new.json", words=(name, *words))
+
+
+def test_missing_shape(refused):
+    refused(1, "deform", "none.obj", "--points", "points.csv", "-o", "out.obj", words=("none.obj", "No such file"))
+    refused(1, "inspect", "none.obj", words=("none.obj", "No such file"))
+
+
+def test_folder_as_shape(refused, here):
+    (here / "folder.obj").mkdir()
+    refused(1, "deform", "folder.obj", "--points", "points.csv", "-o", "out.obj", words=("folder.obj", "directory"))
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("empty.csv", "", ("empty",)),
+        ("none.csv", HEADER, ("no control points",)),
+        ("none.json", '{"format": "neuralmls-control-points", "version": 1, "control_points": []}', ("at least one",)),
+        ("broken.json", '{"format": ', ("line 1", "JSON")),
+        ("twice.csv", HEADER + "a,0,0,0\nb,1,0,0\nc,0,0,0\n", ("'a' and 'c'", "same place")),
+        ("infinite.csv", HEADER + "a,0,0,0\nb,inf,0,0\n", ("'b'", "not finite")),
+        ("flat.csv", "name,x,y\na,0,0\nb,1,0\n", ("2 coordinates", "3")),
+        ("names.csv", HEADER + "a,0,0,0\na,1,0,0\n", ("'a'", "more than one")),
+        ("target.csv", "name,x,y,z,target_x\na,0,0,0,1\n", ("line 1", "target_y")),
+        ("half.csv", "name,x,y,z,target_x,target_y,target_z\na,0,0,0,1,,2\n", ("line 2", "target_y", "'a'")),
+        ("points.txt", HEADER + "a,0,0,0\n", (".json or .csv",)),
+    ],
+)
+def test_bad_control_points(refused, here, name, text, words):
+    (here / name).write_text(text)
+    refused(1, "deform", "shape.obj", "--points", name, "-o", "out.obj", words=words)
+
+
+def test_missing_control_points(refused):
+    words = ("none.json", "no such file")
+    refused(1, "deform", "shape.obj", "--points", "none.json", "-o", "out.obj", words=words)
+
+
+def test_control_points_far_away_are_named_in_a_warning(run, here):
+    (here / "far.csv").write_text(HEADER + "foot,0.5,0,0.5\nlost,5000,0,0\ntop,0.5,2,0.5\n")
+    ran = run("deform", "shape.obj", "--points", "far.csv", "-o", "out.obj", "--move", "top=0,1,0", "-q")
+    assert ran.code == 0
+    for line in ran.err.splitlines():
+        assert line.startswith("neuralmls: warning: the ")
+        assert "of 'lost' lies up to 4999 units outside" in line
+    assert "the position of" in ran.err
+
+
+CLASSIC = ("--weights", "inverse-distance")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--temperature", "0"), ("temperature", "above 0", "0")),
+        (("--temperature", "-1"), ("temperature", "-1")),
+        (("--temperature", "nan"), ("temperature", "nan")),
+        ((*CLASSIC, "--alpha", "0"), ("alpha", "above 0")),
+        ((*CLASSIC, "--alpha", "inf"), ("alpha", "inf")),
+        ((*CLASSIC, "--epsilon", "-0.1"), ("epsilon", "at least 0", "-0.1")),
+        (("--width", "0"), ("width", "1 to 16384")),
+        (("--width", "1000000"), ("width", "1000000")),
+        (("--steps", "0"), ("steps", "found 0")),
+        (("--steps", "-5"), ("steps", "-5")),
+        (("--seed", "-1"), ("seed", "-1")),
+        (("--steps", "many"), ("--steps", " int", "deform --help")),
+        (("--weights", "magic"), ("--weights", "'magic'", "inverse-distance")),
+        (("--transform", "projective"), ("--transform", "'projective'", "similarity")),
+        (("--alpha", "2"), ("--alpha", "inverse-distance", "neural")),
+        (("--epsilon", "2"), ("--epsilon", "inverse-distance")),
+        ((*CLASSIC, "--width", "64"), ("--width", "neural", "inverse-distance")),
+        ((*CLASSIC, "--steps", "64"), ("--steps", "neural")),
+        ((*CLASSIC, "--seed", "1"), ("--seed", "neural")),
+        (("--move", "tpo=0,1,0"), ("'tpo'", "nearest name is 'top'")),
+        (("--move", "top=0,1"), ("'top'", "3 finite numbers")),
+        (("--move", "top=0,1,inf"), ("'top'", "finite")),
+        (("--move", "top=up"), ("NAME=dx,dy,dz", "top=up")),
+        (("--move", "0,1,0"), ("NAME=dx,dy,dz", "0,1,0")),
+        (("--move", "top=0,1,0", "--move", "top=0,2,0"), ("'top'", "twice")),
+        (("--frobnicate",), ("--frobnicate", "deform --help")),
+        (("too", "many"), ("unexpected", "deform --help")),
+    ],
+)
+def test_wrong_options(refused, options, words):
+    given = () if "--move" in options else ("--move", "top=0,1,0")
+    refused(2, "deform", "shape.obj", "--points", "points.csv", "-o", "out.obj", *given, *options, words=words)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("deform", "shape.obj", "-o", "out.obj"), ("--points",)),
+        (("deform", "shape.obj", "--points", "points.csv"), ("--output",)),
+        (("deform",), ("SHAPE", "deform --help")),
+        (("frob",), ("'frob'", "neuralmls --help")),
+        (("sample", "char", "-o", "out.obj"), ("'char'", "'chair'")),
+        (("sample", "chair", "-o", "out.ply"), ("out.ply", ".obj")),
+        (("points", "shape.obj", "-o", "out.txt"), ("out.txt", ".json or .csv")),
+        (("points", "shape.obj", "-o", "out.json", "--count", "0"), ("count", "0")),
+        (("points", "shape.obj", "-o", "out.json", "--seed", "-1"), ("seed", "-1")),
+        (("render", "shape.obj", "-o", "out.jpg"), ("out.jpg", ".png")),
+        (("render", "shape.obj", "-o", "out.png", "--heat", "top"), ("--heat", "--points")),
+        (("render", "shape.obj", "-o", "o.png", "--points", "points.csv", "--heat", "tip"), ("'tip'", "'top'")),
+    ],
+)
+def test_wrong_use(refused, arguments, words):
+    refused(2, *arguments, words=words)
+
+
+def test_control_characters_in_names_do_not_reach_the_terminal(refused):
+    refused(1, "inspect", "a\nb\x1b[31m.obj", words=(r"a\nb\x1b[31m.obj",))

@@ -1,0 +1,219 @@
+"""`neuralmls deform` where all is well."""
+
+from __future__ import annotations
+
+import json
+import os
+
+import numpy as np
+import pytest
+
+import neuralmls as nm
+
+QUICK = ("--width", "32", "--steps", "20")
+CLASSIC = ("--weights", "inverse-distance")
+DEFORM = ("deform", "shape.obj", "--points", "points.csv")
+
+
+@pytest.mark.parametrize("weights", [QUICK, CLASSIC])
+def test_unmoved_control_points_give_the_very_bytes(run, here, weights):
+    ran = run(*DEFORM, "-o", "out.obj", *weights)
+    assert ran.code == 0
+    assert (here / "out.obj").read_bytes() == (here / "shape.obj").read_bytes()
+    assert ran.err == "neuralmls: warning: no control point is moved, so that the output is the input\n"
+
+
+def test_only_positions_change(run, here):
+    assert run(*DEFORM, "-o", "out.obj", *CLASSIC, "--move", "top=0,1,0").code == 0
+    before = (here / "shape.obj").read_text().splitlines()
+    after = (here / "out.obj").read_text().splitlines()
+    assert len(after) == len(before)
+    for old, new in zip(before, after, strict=True):
+        assert old == new or (old.startswith("v ") and new.startswith("v "))
+    assert sum(old != new for old, new in zip(before, after, strict=True)) >= 4
+
+
+@pytest.mark.parametrize("transform", ["rigid", "similarity", "affine"])
+@pytest.mark.parametrize("kind", ["neural", "inverse-distance"])
+def test_positions_are_those_of_the_package(run, here, kind, transform):
+    options = ("--weights", kind, *(QUICK if kind == "neural" else ("--alpha", "0.75", "--epsilon", "0.01")))
+    moves = ("--move", "top=0.25,1,0", "--move", "side=0,0,-0.5")
+    assert run(*DEFORM, "-o", "out.obj", *options, *moves, "--transform", transform, "--temperature", "0.8").code == 0
+    shape, points = nm.read("shape.obj"), nm.ControlPoints.read("points.csv")
+    points = points.moved({"top": [0.25, 1, 0], "side": [0, 0, -0.5]})
+    if kind == "neural":
+        weights = nm.NeuralWeights.fit(points.sources, bounds=shape.bounds, width=32, steps=20)
+    else:
+        weights = nm.InverseDistanceWeights(points.sources, bounds=shape.bounds, alpha=0.75, epsilon=0.01)
+    expected = nm.Deformer(shape.positions, weights, transform=transform).deform(points.targets, 0.8)
+    np.testing.assert_allclose(nm.read("out.obj").positions, expected, rtol=0, atol=1e-6)
+
+
+def test_moves_add_to_the_targets_of_the_file(run, here):
+    text = "name,x,y,z,target_x,target_y,target_z\nfoot,0.5,0,0.5,0.5,0,0.5\ntop,0.5,2,0.5,0.5,3,0.5\n"
+    (here / "moved.csv").write_text(text)
+    points = ("--points", "moved.csv")
+    ran = run("deform", "shape.obj", *points, "-o", "out.obj", *CLASSIC, "--move", "top=0,0.5,0", "--json")
+    moved = {point["name"]: point["moved"] for point in json.loads(ran.out)["control_points"]}
+    assert moved == {"foot": 0.0, "top": 1.5}
+
+
+def test_names_may_hold_an_equals_sign(run, here):
+    (here / "odd.csv").write_text("name,x,y,z\na=b,0,0,0\nc,0,2,0\n")
+    ran = run("deform", "shape.obj", "--points", "odd.csv", "-o", "out.obj", *CLASSIC, "--move", "a=b=0,-1,0", "--json")
+    assert [point["moved"] for point in json.loads(ran.out)["control_points"]] == [1.0, 0.0]
+
+
+def test_json_and_csv_points_give_the_same(run, here):
+    nm.ControlPoints.read("points.csv").write("points.json")
+    for ending in ("csv", "json"):
+        ran = run(
+            "deform", "shape.obj", "--points", f"points.{ending}", "-o", f"{ending}.obj", "--move", "top=1,0,0", *QUICK
+        )
+        assert ran.code == 0
+    assert (here / "csv.obj").read_bytes() == (here / "json.obj").read_bytes()
+
+
+def test_same_seed_gives_the_same_bytes_and_another_one_others(run, here):
+    for name, seed in (("a", "7"), ("b", "7"), ("c", "8")):
+        assert run(*DEFORM, "-o", f"{name}.obj", "--move", "top=1,0,0", *QUICK, "--seed", seed).code == 0
+    a, b, c = ((here / f"{name}.obj").read_bytes() for name in "abc")
+    assert a == b
+    assert a != c
+
+
+def test_summary_for_machines(run):
+    ran = run(*DEFORM, "-o", "out.obj", *QUICK, "--seed", "3", "--move", "top=0,1,0", "--json", "--temperature", "1.5")
+    told = json.loads(ran.out)
+    assert ran.err == ""
+    assert told["input"] == "shape.obj"
+    assert told["output"] == "out.obj"
+    assert told["files"] == ["out.obj"]
+    assert (told["format"], told["vertices"], told["triangles"], told["longest_side"]) == ("OBJ", 8, 4, 2.0)
+    assert told["weights"]["kind"] == "neural"
+    assert told["weights"]["steps"] == 20
+    assert told["weights"]["seed"] == 3
+    assert told["weights"]["loss"] > 0
+    assert (told["transform"], told["temperature"]) == ("rigid", 1.5)
+    assert [point["name"] for point in told["control_points"]] == ["foot", "side", "top"]
+    assert list(told["seconds"]) == ["read", "train", "bind", "move", "write"]
+    assert told["warnings"] == []
+
+
+def test_distances_to_targets_are_where_the_control_points_arrive(run):
+    """Classic weights meet every target; a network after few steps does not, and is said not to."""
+    exact = json.loads(run(*DEFORM, "-o", "a.obj", *CLASSIC, "--move", "top=0,1,0", "--json").out)
+    assert max(point["distance_to_target"] for point in exact["control_points"]) < 1e-6
+    short = json.loads(run(*DEFORM, "-o", "b.obj", "--steps", "1", "--move", "top=0,1,0", "--json").out)
+    points = nm.ControlPoints.read("points.csv").moved({"top": [0, 1, 0]})
+    weights = nm.NeuralWeights.fit(points.sources, bounds=nm.read("shape.obj").bounds, steps=1)
+    arrived = nm.Deformer(points.sources, weights).deform(points.targets)
+    expected = np.linalg.norm(arrived - points.targets, axis=1)
+    assert expected.max() > 0.1
+    found = [point["distance_to_target"] for point in short["control_points"]]
+    np.testing.assert_allclose(found, expected, atol=1e-6)
+
+
+def test_summary_for_people(run):
+    ran = run(*DEFORM, "-o", "out.obj", *QUICK, "--move", "top=0,1,0")
+    assert ran.err == ""
+    lines = ran.out.splitlines()
+    assert lines[0] == "shape.obj -> out.obj"
+    assert max(map(len, lines)) <= 80
+    for words in (
+        "8, in 4 triangles",
+        "3, 1 of them moved",
+        "neural, loss",
+        "after 20 steps, seed 0",
+        "rigid, temperature 1",
+    ):
+        assert words in ran.out
+    for stage in ("read ", "train ", "bind ", "move ", "write ", "in all"):
+        assert stage in ran.out
+    top = next(line for line in lines if line.startswith("  top")).split()
+    assert top[1] == "1.0000"
+    assert top[-1] == "%"
+
+
+def test_many_control_points_are_listed_when_asked_for(run, here):
+    lines = [f"p{i},{i / 30},{i / 20},0" for i in range(30)]
+    (here / "many.csv").write_text("\n".join(["name,x,y,z", *lines]) + "\n")
+    many = ("deform", "shape.obj", "--points", "many.csv", *CLASSIC, "--move", "p3=0,0.5,0")
+    short, long = run(*many, "-o", "a.obj").out, run(*many, "-o", "b.obj", "--verbose").out
+    assert "--verbose shows all 30" in short
+    assert long.count("\n  p") == 30
+    assert short.count("\n  p") == 20
+
+
+def test_quiet_says_nothing(run, here):
+    ran = run(*DEFORM, "-o", "out.obj", *CLASSIC, "--move", "top=0,1,0", "-q")
+    assert (ran.code, ran.out, ran.err) == (0, "", "")
+    assert (here / "out.obj").is_file()
+
+
+def test_standard_output_gets_the_file_and_nothing_else(process, here):
+    moved = (*DEFORM, *CLASSIC, "--move", "top=0,1,0")
+    assert process(*moved, "-o", "out.obj").code == 0
+    done = process(*moved, "-o", "-")
+    assert done.code == 0
+    assert done.out == (here / "out.obj").read_bytes()
+    assert b"3, 1 of them moved" in done.err
+    told = process(*moved, "-o", "-", "--json")
+    assert told.out == done.out
+    assert json.loads(told.err)["output"] == "-"
+
+
+def test_binary_files_go_through_standard_output(process, here):
+    cloud = np.random.default_rng(0).uniform(-1, 1, (50, 3))
+    np.save("cloud.npy", cloud)
+    done = process("deform", "cloud.npy", "--points", "points.csv", "-o", "-", *CLASSIC, "-q")
+    assert done.out == (here / "cloud.npy").read_bytes()
+
+
+def test_real_process_ends_with_zero_and_no_word_on_standard_error(process, here):
+    done = process(*DEFORM, "-o", "out.obj", *CLASSIC, "--move", "top=0,1,0")
+    assert (done.code, done.err) == (0, b"")
+    assert sorted(os.listdir(here)) == ["out.obj", "points.csv", "shape.obj"]
+
+
+def test_gltf_buffers_are_called_after_the_output(run, here, data):
+    original = data / "manufactured" / "kaykit_furniture"
+    for name in ("chair_A.gltf", "chair_A.bin"):
+        (here / name).write_bytes((original / name).read_bytes())
+    buffer = (here / "chair_A.bin").read_bytes()
+    gltf = ("deform", "chair_A.gltf", "--points", "p.json", *CLASSIC, "--move", "p1=0,0.2,0")
+    assert run("points", "chair_A.gltf", "-o", "p.json").code == 0
+    ran = run(*gltf, "-o", "bent.gltf", "--json")
+    assert ran.code == 0, ran.err
+    assert json.loads(ran.out)["files"] == ["bent.gltf", "bent.bin"]
+    assert (here / "chair_A.bin").read_bytes() == buffer
+    moved = nm.read("bent.gltf").positions - nm.read("chair_A.gltf").positions
+    assert np.abs(moved).max() > 0.05
+    (here / "bent.gltf").unlink()
+    ran = run(*gltf, "-o", "bent.gltf")
+    assert ran.code == 2
+    assert "bent.bin: there is such a file already" in ran.err
+    assert not (here / "bent.gltf").exists()
+    ran = run(*gltf, "-o", "-")
+    assert ran.code == 2
+    assert "chair_A.bin" in ran.err
+
+
+@pytest.mark.parametrize(
+    "name", ["shapenet/ShapeNetChair1/model.obj", "manufactured/oakChair/oakChair.obj", "botsch_sorkine/bar.off"]
+)
+def test_real_shapes_from_placement_to_result(run, data, name):
+    shape = data / name
+    output = f"out{shape.suffix}"
+    assert run("points", shape, "-o", "p.csv", "--count", "8").code == 0
+    same = run("deform", shape, "--points", "p.csv", "-o", output, "-q")
+    assert same.code == 0
+    with open(output, "rb") as file:
+        assert file.read() == shape.read_bytes()
+    step = float(np.ptp(nm.read(shape).positions, axis=0).max()) / 5
+    told = run("deform", shape, "--points", "p.csv", "-o", output, "--force", "--move", f"p1=0,{step},0", "--json")
+    points = json.loads(told.out)["control_points"]
+    assert points[0]["moved"] == pytest.approx(step)
+    # A network stops when each control point has 0.9 of the weight at its place: nearly there.
+    assert max(point["distance_to_target"] for point in points) < 0.2 * step
+    assert len(nm.read(output).positions) == len(nm.read(shape).positions)

@@ -1,0 +1,124 @@
+"""Where a command cannot or should not write: nothing there changes, and no half of a file is left."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+
+import pytest
+
+import neuralmls as nm
+
+QUICK = ("--weights", "inverse-distance", "-q")
+DEFORM = ("deform", "shape.obj", "--points", "points.csv", "--move", "top=0,1,0", *QUICK)
+
+
+def test_existing_output_is_refused_without_force(refused, run, here):
+    (here / "out.obj").write_text("precious")
+    refused(2, *DEFORM, "-o", "out.obj", words=("out.obj", "--force"))
+    assert run(*DEFORM, "-o", "out.obj", "--force").code == 0
+    assert nm.read("out.obj").positions[:, 1].max() > 2.5
+
+
+def test_output_equal_to_input_is_refused_without_force(refused, run, here):
+    (here / "folder").mkdir()
+    for name in ("shape.obj", "folder/../shape.obj", here / "shape.obj"):
+        refused(2, *DEFORM, "-o", name, words=("the input itself", "--force"))
+    (here / "link.obj").symlink_to("shape.obj")
+    refused(2, *DEFORM, "-o", "link.obj", words=("the input itself",))
+    refused(2, "points", "points.csv", "-o", "points.csv", words=("the input itself",))
+    assert run(*DEFORM, "-o", "shape.obj", "--force").code == 0
+    assert nm.read("shape.obj").positions[:, 1].max() > 2.5
+
+
+def test_output_of_another_format_is_refused(refused):
+    refused(2, *DEFORM, "-o", "out.ply", words=("out.ply", ".obj", "OBJ"))
+    refused(2, *DEFORM, "-o", "out", words=(".obj",))
+
+
+def test_missing_folder(refused):
+    refused(1, *DEFORM, "-o", "none/out.obj", words=("none/out.obj", "no folder 'none'"))
+    refused(1, "points", "shape.obj", "-o", "none/p.json", words=("no folder 'none'",))
+    refused(1, "sample", "chair", "-o", "none/chair.obj", words=("no folder 'none'",))
+
+
+def test_file_where_a_folder_should_be(refused):
+    refused(1, *DEFORM, "-o", "points.csv/out.obj", words=("no folder 'points.csv'",))
+    refused(1, "demo", "-o", "points.csv", words=("points.csv", "cannot make this folder"))
+
+
+def test_folder_as_output(refused, here):
+    (here / "out.obj").mkdir()
+    refused(1, *DEFORM, "-o", "out.obj", words=("out.obj", "folder"))
+    refused(1, *DEFORM, "-o", "out.obj", "--force", words=("out.obj", "folder"))
+
+
+def test_folder_that_is_not_writable(refused, here):
+    folder = here / "locked"
+    folder.mkdir()
+    folder.chmod(0o555)
+    if os.access(folder, os.W_OK):
+        pytest.skip("this user may write anywhere (root)")
+    refused(1, *DEFORM, "-o", "locked/out.obj", words=("locked", "not writable"))
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="there is no /proc, where not even root may write")
+def test_folder_where_not_even_root_may_write(refused):
+    refused(1, *DEFORM, "-o", "/proc/out.obj", words=("/proc/out.obj", "cannot write"))
+
+
+# Files of at most so many bytes: writing more fails as on a full disk.
+FULL = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (64, 64))
+from neuralmls.cli import main
+sys.exit(main())
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no limit of the size of files")
+@pytest.mark.parametrize("there", [False, True])
+def test_full_disk_leaves_everything_as_it_was(process, here, content, there):
+    if there:
+        (here / "out.obj").write_text("precious")
+    before = content()
+    ran = process(*DEFORM, "-o", "out.obj", "--force", program=FULL)
+    assert (ran.code, ran.out) == (1, b"")
+    assert ran.err.startswith(b"neuralmls: error: out.obj: cannot write: ")
+    assert ran.err.count(b"\n") == 1
+    assert content() == before
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no /dev/full")
+@pytest.mark.parametrize("arguments", [(*DEFORM, "-o", "-"), ("inspect", "shape.obj"), ("--help",)])
+def test_full_standard_output(process, arguments):
+    with open("/dev/full", "wb") as full:
+        ran = process(*arguments, stdout=full)
+    assert ran.code == 1
+    assert ran.err == b"neuralmls: error: standard output: cannot write: No space left on device\n"
+
+
+def test_reader_that_goes_away_is_no_error_to_speak_of(process):
+    reader, writer = os.pipe()
+    os.close(reader)
+    ran = process(*DEFORM, "-o", "-", stdout=writer)
+    os.close(writer)
+    assert (ran.code, ran.err) == (1, b"")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to send to one process")
+def test_interrupt_writes_nothing(start, content):
+    before = content()
+    # Far more steps than anybody waits for: it can only end by the interrupt.
+    with start("deform", "shape.obj", "--points", "points.csv", "-o", "out.obj", "--steps", "1000000") as running:
+        warned = running.stderr.readline()  # said just before the training starts
+        assert warned.startswith(b"neuralmls: warning: no control point is moved")
+        time.sleep(0.5)
+        assert running.poll() is None
+        running.send_signal(signal.SIGINT)
+        out, err = running.communicate(timeout=20)
+    assert (running.returncode, out, err) == (130, b"", b"neuralmls: interrupted\n")
+    assert content() == before

@@ -1,0 +1,128 @@
+"""Shapes and the files around them: reading, writing, what goes along, what is refused."""
+
+from __future__ import annotations
+
+import json
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import neuralmls as nm
+
+TRIANGLE = "mtllib red paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n"
+
+
+def gltf(folder: Path, buffers: int = 1) -> Path:
+    """A triangle for each of some buffers beside the file, and an image."""
+    entries = {"buffers": [], "bufferViews": [], "accessors": [], "meshes": [], "nodes": []}
+    for i in range(buffers):
+        (folder / f"part {i}.bin").write_bytes(struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0))
+        entries["buffers"].append({"uri": f"part%20{i}.bin", "byteLength": 36})
+        entries["bufferViews"].append({"buffer": i, "byteLength": 36})
+        entries["accessors"].append(
+            {"bufferView": i, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}
+        )
+        entries["meshes"].append({"primitives": [{"attributes": {"POSITION": i}}]})
+        entries["nodes"].append({"mesh": i, "translation": [i, 0, 0]})
+    (folder / "skin.png").write_bytes(b"image")
+    entries |= {"images": [{"uri": "skin.png"}], "scenes": [{"nodes": list(range(buffers))}], "scene": 0}
+    path = folder / "shape.gltf"
+    path.write_text(json.dumps({"asset": {"version": "2.0"}, **entries}))
+    return path
+
+
+def test_a_shape_has_positions_faces_and_bounds(tmp_path):
+    path = tmp_path / "a.obj"
+    path.write_text(TRIANGLE)
+    shape = nm.read(path)
+    assert shape.positions.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    assert shape.faces.tolist() == [[0, 1, 2]]
+    assert shape.bounds.tolist() == [[0, 0, 0], [1, 1, 0]]
+    assert shape.format == "OBJ"
+    with pytest.raises(ValueError, match="read-only"):
+        shape.positions[0, 0] = 1
+
+
+def test_materials_and_textures_go_along_into_another_folder(tmp_path):
+    here, there = tmp_path / "here", tmp_path / "there"
+    (here / "images").mkdir(parents=True)
+    there.mkdir()
+    (here / "a.obj").write_text(TRIANGLE)
+    (here / "red paint.mtl").write_text("newmtl red\nmap_Kd -s 1 1 1 images/red wood.png\nbump ../outside.png\n")
+    (here / "images" / "red wood.png").write_bytes(b"wood")
+    (tmp_path / "outside.png").write_bytes(b"outside")
+    shape = nm.read(here / "a.obj")
+    written = shape.write(there / "b.obj", shape.positions + 1)
+    assert [str(path.relative_to(there)) for path in written] == ["b.obj", "red paint.mtl", "images/red wood.png"]
+    assert (there / "images" / "red wood.png").read_bytes() == b"wood"
+    (there / "red paint.mtl").write_text("mine")
+    shape.write(there / "b.obj", shape.positions + 2)
+    assert (there / "red paint.mtl").read_text() == "mine"
+    assert [path.name for path in shape.write(here / "b.obj", shape.positions)] == ["b.obj"]
+
+
+def test_buffers_that_change_are_called_after_the_new_file(tmp_path):
+    path = gltf(tmp_path, buffers=2)
+    before = {name: (tmp_path / name).read_bytes() for name in ("shape.gltf", "part 0.bin", "part 1.bin")}
+    shape = nm.read(path)
+    written = shape.write(tmp_path / "bent it.gltf", shape.positions + np.array([0, 0, 1]))
+    assert [path.name for path in written] == ["bent it.gltf", "bent it.bin", "bent it-2.bin"]
+    assert "bent%20it-2.bin" in (tmp_path / "bent it.gltf").read_text()
+    assert np.array_equal(nm.read(tmp_path / "bent it.gltf").positions, shape.positions + np.array([0, 0, 1]))
+    for name, content in before.items():
+        assert (tmp_path / name).read_bytes() == content, "the original is untouched"
+
+
+def test_a_scene_opens_in_another_folder(tmp_path):
+    there = tmp_path / "there"
+    there.mkdir()
+    shape = nm.read(gltf(tmp_path, buffers=2))
+    y = shape.positions.copy()
+    y[4] += 0.5  # of the second buffer alone
+    written = shape.write(there / "bent.gltf", y)
+    assert {path.name for path in written} == {"bent.gltf", "bent.bin", "part 0.bin", "skin.png"}
+    assert np.array_equal(nm.read(there / "bent.gltf").positions, y)
+    same = tmp_path / "same"
+    same.mkdir()
+    shape.write(same / "shape.gltf", shape.positions)
+    assert (same / "shape.gltf").read_bytes() == (tmp_path / "shape.gltf").read_bytes()
+    assert np.array_equal(nm.read(same / "shape.gltf").positions, shape.positions)
+
+
+def test_nothing_is_replaced_without_leave(tmp_path):
+    shape = nm.read(gltf(tmp_path))
+    (tmp_path / "bent.bin").write_bytes(b"mine")
+    with pytest.raises(nm.ArgumentError, match=r"bent\.bin: there is such a file already"):
+        shape.write(tmp_path / "bent.gltf", shape.positions + 1, overwrite=False)
+    assert not (tmp_path / "bent.gltf").exists()
+    assert (tmp_path / "bent.bin").read_bytes() == b"mine"
+
+
+@pytest.mark.parametrize(
+    "uri", ["/etc/hostname", "../secret.bin", "https://example.org/a.bin", "C:/a.bin", "a/../../b"]
+)
+def test_buffers_outside_of_the_folder_are_not_read(tmp_path, uri):
+    path = gltf(tmp_path)
+    path.write_text(path.read_text().replace("part%200.bin", uri))
+    with pytest.raises(nm.FileError, match=r"shape\.gltf: buffers\[0\]\.uri"):
+        nm.read(path)
+
+
+def test_positions_and_maps_must_fit(tmp_path):
+    path = tmp_path / "a.obj"
+    path.write_text(TRIANGLE)
+    shape = nm.read(path)
+    for positions, maps, sentence in (
+        (shape.positions[:2], None, "expected 3 positions"),
+        (shape.positions[:, :2], None, "expected 3 coordinates a point"),
+        (shape.positions, np.zeros((2, 3, 3)), "3 x 3 map for each position"),
+        (shape.positions, np.zeros((3, 9)), r"expected an \(n, d, d\) array"),
+        (shape.positions * np.nan, None, "not finite"),
+    ):
+        with pytest.raises(nm.ArgumentError, match=sentence):
+            shape.write(tmp_path / "b.obj", positions, maps=maps)
+    with pytest.raises(nm.FileError, match=r"b\.ply: expected the ending \.obj"):
+        shape.write(tmp_path / "b.ply", shape.positions)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.obj"]
