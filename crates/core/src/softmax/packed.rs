@@ -39,7 +39,7 @@ pub(crate) struct PackedWeights {
 impl PackedWeights {
     /// Packs `logits` (n x m), in the memory of `old` where there is one.
     pub(crate) fn new(logits: &[f32], m: usize, temperature: f64, old: Option<PackedWeights>) -> Self {
-        debug_assert!(m > 0 && u32::try_from(m).is_ok() && logits.len() % m == 0);
+        debug_assert!(m > 0 && u32::try_from(m).is_ok() && logits.len().is_multiple_of(m));
         let size = m + MORE;
         let mut rows = old.map(|old| old.rows).unwrap_or_default();
         rows.resize((logits.len() / m).div_ceil(LANES) * size, Row([0.0; LANES]));
@@ -67,7 +67,7 @@ impl PackedWeights {
 
     /// The blocks from the one of the point `first`, a multiple of 16, on.
     pub(crate) fn blocks(&self, first: usize) -> impl Iterator<Item = &[Row]> + Clone {
-        debug_assert!(first % LANES == 0);
+        debug_assert!(first.is_multiple_of(LANES));
         self.rows[first / LANES * (self.m + MORE)..].chunks_exact(self.m + MORE)
     }
 }

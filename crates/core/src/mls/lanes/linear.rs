@@ -31,7 +31,7 @@ pub(super) fn scale<const FMA: bool>(
 }
 
 /// Below this, the control points lie so flat that rounding shows in the map (by 1e-16 over it); the twin's does as well, but differently.
-const FLAT: f64 = 1e-10;
+const FLAT: f64 = 1e-9;
 
 /// `M - I = G - I + E^T (P / |P| + ridge)^-1 / |P|`, E the moments of the residuals of G; by P = L D L^T.
 #[inline(always)]

@@ -83,7 +83,7 @@ fn compare(
 /// `(s2 + s3) / s1`, s3 < 0 where the determinant is.
 fn gap(c: &Matrix<3>) -> f64 {
     let size = matrix::norm(c);
-    if !(size > 0.0) {
+    if size == 0.0 {
         return 0.0;
     }
     let c = nalgebra::Matrix3::from_fn(|i, j| c[i][j] / size);
@@ -151,7 +151,7 @@ fn lanes_agree_with_the_twin_for_any_targets_and_temperature() {
                     assert!(unsound < 0.2, "{m} control points, T = {t}: {unsound}");
                 }
             }
-            assert_close(&given, &near, t, Transform::Affine, 1e-5, 0.0);
+            assert_close(&given, &near, t, Transform::Affine, 3e-5, 0.0);
         }
     }
 }
