@@ -39,8 +39,9 @@ proptest! {
         for transform in ALL {
             let there = world(&deform(&x, &p, &q, 3, transform));
             let here = deform(&world(&x), &world(&p), &world(&q), 3, transform);
+            // Logits are single: an affine map that throws points far out of the box throws their last digits as far.
             for (a, b) in there.iter().zip(&here) {
-                prop_assert!((a - b).abs() < 2e-3, "{} {}", a, b);
+                prop_assert!((a - b).abs() < 2e-3 * (a.abs() / 40.0).max(1.0), "{} {}", a, b);
             }
         }
     }
