@@ -60,6 +60,7 @@ pub(crate) struct BatchPoints<'a> {
 pub(crate) struct Scratch {
     /// `p_k`, `q_k` of the dominant control point.
     own: [Lane; 6],
+    sums: moments::Accumulator,
     /// `C / w_2`, row-major; for affine maps of the residuals.
     moment: [Lane; 9],
     /// The moments of p with itself: xx, xy, xz, yy, yz, zz (affine), or their trace alone (similarity).
@@ -81,6 +82,7 @@ impl Scratch {
         let (moment, extent, change) = ([ZERO; 9], [ZERO; 6], [ZERO; 9]);
         Scratch {
             own: [ZERO; 6],
+            sums: moments::Accumulator::ZERO,
             moment,
             extent,
             p_mean: [ZERO; 3],

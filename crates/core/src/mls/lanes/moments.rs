@@ -11,8 +11,9 @@
 use super::super::matrix::Matrix;
 use super::{multiply_add, multiversion_loops, Lane, Row, Scratch, LANES};
 
-/// Control points in one go over the lanes: the sums are loaded and stored once for all of them.
-const TOGETHER: usize = 5;
+/// Control points in one go over the lanes, as many as there are: the sums are loaded and stored once for all of them.
+const MANY: usize = 10;
+const SOME: usize = 5;
 
 /// The sums of a block's lanes, `K` of them.
 type Sums<const K: usize> = [[f64; LANES]; K];
@@ -53,16 +54,28 @@ fn affine_body<const FMA: bool>(
     moments::<FMA, 6>(rows, points, base, block * LANES, scratch);
 }
 
-/// The sums over the control points; `EXTENT` moments of p: none, their trace, or all 6.
-struct Accumulator<const EXTENT: usize> {
+/// The sums over the control points.
+pub(super) struct Accumulator {
     a: Sums<3>,
     b: Sums<3>,
-    /// Of the residuals, where `EXTENT` is 6.
+    /// Of the residuals (affine).
     residual: Sums<3>,
     moment: Sums<9>,
-    extent: Sums<EXTENT>,
+    /// As [`Scratch::extent`].
+    extent: Sums<6>,
 }
 
+impl Accumulator {
+    pub(super) const ZERO: Accumulator = Accumulator {
+        a: [[0.0; LANES]; 3],
+        b: [[0.0; LANES]; 3],
+        residual: [[0.0; LANES]; 3],
+        moment: [[0.0; LANES]; 9],
+        extent: [[0.0; LANES]; 6],
+    };
+}
+
+/// `EXTENT` moments of p: none, their trace, or all 6.
 #[inline(always)]
 fn moments<const FMA: bool, const EXTENT: usize>(
     rows: &[Row],
@@ -76,20 +89,19 @@ fn moments<const FMA: bool, const EXTENT: usize>(
     for (own, all) in own.iter_mut().zip(&scratch.own) {
         own.copy_from_slice(&all[first..first + LANES]);
     }
-    let mut sums = Accumulator {
-        a: [[0.0; LANES]; 3],
-        b: [[0.0; LANES]; 3],
-        residual: [[0.0; LANES]; 3],
-        moment: [[0.0; LANES]; 9],
-        extent: [[0.0; LANES]; EXTENT],
-    };
-    let (some_rows, some_points) = (weights.chunks_exact(TOGETHER), points.chunks_exact(TOGETHER));
-    let (last_rows, last_points) = (some_rows.remainder(), some_points.remainder());
-    for (rows, points) in some_rows.zip(some_points) {
-        add::<FMA, EXTENT, TOGETHER>(rows, points, &own, base, &mut sums);
-    }
-    for (row, point) in last_rows.iter().zip(last_points) {
-        add::<FMA, EXTENT, 1>(std::slice::from_ref(row), std::slice::from_ref(point), &own, base, &mut sums);
+    let sums = &mut scratch.sums;
+    let mut at = 0;
+    while at < points.len() {
+        let (rows, points) = (&weights[at..], &points[at..]);
+        at += match (points.len(), at) {
+            // With more sums, so many at once do not fit in the registers.
+            (MANY.., 0) if EXTENT == 0 => add::<FMA, EXTENT, MANY, true>(rows, points, &own, base, sums),
+            (MANY.., _) if EXTENT == 0 => add::<FMA, EXTENT, MANY, false>(rows, points, &own, base, sums),
+            (SOME.., 0) => add::<FMA, EXTENT, SOME, true>(rows, points, &own, base, sums),
+            (SOME.., _) => add::<FMA, EXTENT, SOME, false>(rows, points, &own, base, sums),
+            (_, 0) => add::<FMA, EXTENT, 1, true>(rows, points, &own, base, sums),
+            _ => add::<FMA, EXTENT, 1, false>(rows, points, &own, base, sums),
+        };
     }
     let mean = if EXTENT == 6 { &sums.residual } else { &sums.b };
     let (mut p_mean, mut shift) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
@@ -115,7 +127,7 @@ fn moments<const FMA: bool, const EXTENT: usize>(
         }
     }
     store(&sums.moment, first, &mut scratch.moment);
-    store(&sums.extent, first, &mut scratch.extent);
+    store(&sums.extent[..EXTENT], first, &mut scratch.extent);
     store(&p_mean, first, &mut scratch.p_mean);
     store(&shift, first, &mut scratch.shift);
 }
@@ -139,32 +151,32 @@ fn store(block: &[[f64; LANES]], first: usize, batch: &mut [Lane]) {
     }
 }
 
-/// Adds `J` control points to the sums of all lanes.
+/// Adds the first `J` control points to the sums of all lanes, or to nothing if `FRESH`; gives `J`.
 #[inline(always)]
-fn add<const FMA: bool, const EXTENT: usize, const J: usize>(
+fn add<const FMA: bool, const EXTENT: usize, const J: usize, const FRESH: bool>(
     rows: &[Row],
     points: &[[f64; 6]],
     own: &Sums<6>,
     base: &Matrix<3>,
-    sums: &mut Accumulator<EXTENT>,
-) {
-    let (Ok(rows), Ok(points)) = (<&[Row; J]>::try_from(rows), <&[[f64; 6]; J]>::try_from(points)) else {
-        return;
-    };
+    sums: &mut Accumulator,
+) -> usize {
+    let (rows, points) = (&rows[..J], &points[..J]);
     let fma = multiply_add::<FMA>;
     for lane in 0..LANES {
         let (mut moment, mut extent) = ([0.0; 9], [0.0; EXTENT]);
         let (mut sum_a, mut sum_b, mut sum_residual) = ([0.0; 3], [0.0; 3], [0.0; 3]);
-        for k in 0..9 {
-            moment[k] = sums.moment[k][lane];
-        }
-        for k in 0..EXTENT {
-            extent[k] = sums.extent[k][lane];
-        }
-        for c in 0..3 {
-            sum_a[c] = sums.a[c][lane];
-            sum_b[c] = sums.b[c][lane];
-            sum_residual[c] = sums.residual[c][lane];
+        if !FRESH {
+            for k in 0..9 {
+                moment[k] = sums.moment[k][lane];
+            }
+            for k in 0..EXTENT {
+                extent[k] = sums.extent[k][lane];
+            }
+            for c in 0..3 {
+                sum_a[c] = sums.a[c][lane];
+                sum_b[c] = sums.b[c][lane];
+                sum_residual[c] = sums.residual[c][lane];
+            }
         }
         for j in 0..J {
             let (point, r) = (&points[j], f64::from(rows[j].0[lane]));
@@ -205,9 +217,12 @@ fn add<const FMA: bool, const EXTENT: usize, const J: usize>(
         for c in 0..3 {
             sums.a[c][lane] = sum_a[c];
             sums.b[c][lane] = sum_b[c];
-            sums.residual[c][lane] = sum_residual[c];
+            if EXTENT == 6 {
+                sums.residual[c][lane] = sum_residual[c];
+            }
         }
     }
+    J
 }
 
 /// The upper triangle.
