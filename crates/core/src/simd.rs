@@ -4,9 +4,11 @@
 //! for each instruction set and calls the version that was detected. That call and the intrinsics below are all the
 //! `unsafe` there is: values of [`Avx2`] and [`Avx512`] are made inside such kernels only.
 //!
-//! Plain arrays of 16 in place of intrinsics were tried: the compiler turns nested loops over them into gathers.
+//! Plain arrays of 16 in place of intrinsics were tried: the compiler turns nested loops over them into gathers. Kernels that are one
+//! loop over lanes, without a nested one, need no intrinsics: [`loops`].
 
 mod lanes;
+pub(crate) mod loops;
 
 pub(crate) use lanes::{Aligned, Lanes, Portable, WIDTH};
 #[cfg(target_arch = "x86_64")]
