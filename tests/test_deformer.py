@@ -135,7 +135,10 @@ def test_other_threads_run_during_a_long_call():
         ({"temperature": 0}, "temperature: expected a number above 0, found 0"),
         ({"temperature": "hot"}, "temperature: expected a number above 0, found 'hot'"),
         ({"x": [[1j, 0, 0]]}, "x: expected an \\(n, d\\) array of numbers: they are complex"),
-        ({"weights": nm.InverseDistanceWeights([[9.0, 0.0, 0.0]])}, "weights: expected a weight function of the control"),
+        (
+            {"weights": nm.InverseDistanceWeights([[9.0, 0.0, 0.0]])},
+            "weights: expected a weight function of the control",
+        ),
         ({"weights": "magic"}, "weights: expected 'neural' or 'inverse-distance', found 'magic'"),
         ({"transform": "bend"}, "transform: expected 'rigid', 'similarity' or 'affine', found 'bend'"),
         ({"seed": -1}, "seed: expected a whole number from 0"),
