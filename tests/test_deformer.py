@@ -29,6 +29,14 @@ def test_any_layout_of_memory_gives_the_same_result_and_is_not_changed(dtype, di
         assert np.array_equal(same, before)
 
 
+@pytest.mark.parametrize("size", [1e-300, 1e-150, 1e150, 1e300])
+def test_classic_weights_in_one_call_do_not_depend_on_the_unit_of_length(size):
+    x, p, q = RNG.uniform(-1, 1, (30, 3)), RNG.uniform(-1, 1, (5, 3)), RNG.uniform(-1, 1, (5, 3))
+    here = nm.deform(x, p, q, weights="inverse-distance")
+    there = nm.deform(x * size, p * size, q * size, weights="inverse-distance")
+    assert np.abs(there / size - here).max() < 1e-6
+
+
 def test_lists_and_integers_are_points_too():
     assert nm.deform([[0, 0], [2, 0]], [[0, 0], [2, 0]], [[0, 1], [2, 1]]).tolist() == [[0.0, 1.0], [2.0, 1.0]]
 
@@ -152,6 +160,11 @@ def test_other_threads_run_during_a_long_call():
         ({"p": [[1.0, 1.0, 1.0]] * 2}, "numbers 0 and 1 are in the same place"),
         ({"temperature": 0}, "temperature: expected a number above 0, found 0"),
         ({"temperature": "hot"}, "temperature: expected a number above 0, found 'hot'"),
+        ({"x": [[1j, 0, 0]]}, "x: expected an \\(n, d\\) array of numbers: they are complex"),
+        (
+            {"weights": nm.InverseDistanceWeights([[9.0, 0.0, 0.0]])},
+            "weights: expected a weight function of the control",
+        ),
         ({"weights": "magic"}, "weights: expected 'neural' or 'inverse-distance', found 'magic'"),
         ({"transform": "bend"}, "transform: expected 'rigid', 'similarity' or 'affine', found 'bend'"),
         ({"seed": -1}, "seed: expected a whole number from 0"),
