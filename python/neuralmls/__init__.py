@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from neuralmls.deformer import Deformer
     from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
     from neuralmls.pipeline import deform
-    from neuralmls.point_tree import PointTree
     from neuralmls.placement import farthest_points
+    from neuralmls.point_tree import PointTree
     from neuralmls.shape import Shape, read
     from neuralmls.weights import InverseDistanceWeights, NeuralWeights, Weights
     from neuralmls.weights.softmax import softmax

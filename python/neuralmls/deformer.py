@@ -65,7 +65,9 @@ class Deformer:
         self._dtype = np.dtype(np.float32 if single else np.float64)
         p = as_points("control_points", weights.control_points)
         points = as_points("x", x, p.shape[1])
-        logits = np.ascontiguousarray(weights.logits(x if isinstance(x, PointTree) else points, progress=progress), dtype=np.float32)
+        logits = np.ascontiguousarray(
+            weights.logits(x if isinstance(x, PointTree) else points, progress=progress), dtype=np.float32
+        )
         if logits.shape != (len(points), len(p)):
             raise ArgumentError(f"logits: expected shape {(len(points), len(p))}, found {logits.shape}")
         self._p = p
