@@ -22,6 +22,8 @@ rust: tools
 	cargo fmt --manifest-path fuzz/Cargo.toml --check
 	cargo clippy --workspace --all-targets --locked -- -D warnings
 	cargo test --workspace --locked
+	NEURALMLS_SIMD=avx2 cargo test --locked -p neuralmls-core
+	NEURALMLS_SIMD=portable cargo test --locked -p neuralmls-core
 
 # The browser editor's crates: they must compile without threads for WebAssembly.
 wasm: tools

@@ -292,6 +292,8 @@ def test_moving_an_unknown_control_point_names_the_nearest() -> None:
         points.moved({"seat": (0, 0, 0)})
     with pytest.raises(ArgumentError, match="'seat' needs 2 finite numbers"):
         points.moved({"seat": (0, math.nan)})
+    with pytest.raises(ArgumentError, match="'seat' needs 2 finite numbers to move by, found 'up'"):
+        points.moved({"seat": "up"})  # type: ignore[dict-item]
 
 
 def test_control_points_far_outside_are_named() -> None:

@@ -29,6 +29,14 @@ def test_any_layout_of_memory_gives_the_same_result_and_is_not_changed(dtype, di
         assert np.array_equal(same, before)
 
 
+@pytest.mark.parametrize("size", [1e-300, 1e-150, 1e150, 1e300])
+def test_classic_weights_in_one_call_do_not_depend_on_the_unit_of_length(size):
+    x, p, q = RNG.uniform(-1, 1, (30, 3)), RNG.uniform(-1, 1, (5, 3)), RNG.uniform(-1, 1, (5, 3))
+    here = nm.deform(x, p, q, weights="inverse-distance")
+    there = nm.deform(x * size, p * size, q * size, weights="inverse-distance")
+    assert np.abs(there / size - here).max() < 1e-6
+
+
 def test_lists_and_integers_are_points_too():
     assert nm.deform([[0, 0], [2, 0]], [[0, 0], [2, 0]], [[0, 1], [2, 1]]).tolist() == [[0.0, 1.0], [2.0, 1.0]]
 
@@ -50,6 +58,32 @@ def test_maps_are_returned_when_asked():
     y, maps = deformer.deform(p[:, [1, 2, 0]], return_maps=True)
     assert np.allclose(y, p[:, [1, 2, 0]])
     assert np.allclose(maps, np.eye(3)[[1, 2, 0]], atol=1e-6)
+
+
+def test_a_tree_of_the_points_stands_in_for_them():
+    x = RNG.uniform(-1, 1, (5000, 3))
+    p, q = RNG.uniform(-1, 1, (2, 5, 3))
+    tree = nm.PointTree(x, bounds=[[-1] * 3, [1] * 3])
+    assert len(tree) == 5000
+    neural = nm.NeuralWeights.fit(p, bounds=tree.bounds, width=64)
+    for weights in (neural, nm.InverseDistanceWeights(p)):
+        assert np.array_equal(nm.Deformer(tree, weights).deform(q), nm.Deformer(x, weights).deform(q))
+    with pytest.raises(nm.ArgumentError, match="tree"):
+        nm.NeuralWeights.fit(p, width=64).logits(tree)
+    with pytest.raises(nm.ArgumentError, match="in one place"):
+        nm.PointTree(np.zeros((4, 3)))
+
+
+def test_a_frame_is_written_where_the_caller_wants_it():
+    x, (p, q) = RNG.uniform(-1, 1, (50, 3)), RNG.uniform(-1, 1, (2, 5, 3))
+    deformer = nm.Deformer(x, nm.InverseDistanceWeights(p))
+    out = np.empty((50, 3))
+    assert deformer.deform(q, out=out) is out
+    assert np.array_equal(out, deformer.deform(q))
+    assert deformer.deform(p, out=out).tobytes() == x.tobytes()
+    for wrong in (np.empty((49, 3)), np.empty((50, 3), np.float32), np.empty((3, 50)).T, out.tolist()):
+        with pytest.raises(nm.ArgumentError, match="out: expected a writeable C-contiguous float64 array"):
+            deformer.deform(q, out=wrong)
 
 
 def test_a_point_and_no_points_are_deformed():
@@ -126,6 +160,11 @@ def test_other_threads_run_during_a_long_call():
         ({"p": [[1.0, 1.0, 1.0]] * 2}, "numbers 0 and 1 are in the same place"),
         ({"temperature": 0}, "temperature: expected a number above 0, found 0"),
         ({"temperature": "hot"}, "temperature: expected a number above 0, found 'hot'"),
+        ({"x": [[1j, 0, 0]]}, "x: expected an \\(n, d\\) array of numbers: they are complex"),
+        (
+            {"weights": nm.InverseDistanceWeights([[9.0, 0.0, 0.0]])},
+            "weights: expected a weight function of the control",
+        ),
         ({"weights": "magic"}, "weights: expected 'neural' or 'inverse-distance', found 'magic'"),
         ({"transform": "bend"}, "transform: expected 'rigid', 'similarity' or 'affine', found 'bend'"),
         ({"seed": -1}, "seed: expected a whole number from 0"),

@@ -92,13 +92,16 @@ def test_a_million_vertices_take_seconds() -> None:
 @pytest.mark.parametrize(
     ("positions", "faces", "count", "says"),
     [
-        (SQUARE, TWO_FACES, 0, "at least 1, found 0"),
+        (SQUARE, TWO_FACES, 0, "count: expected a whole number from 1 to 100000, found 0"),
+        (SQUARE, TWO_FACES, 10**12, "count: expected a whole number from 1 to 100000"),
+        (SQUARE, TWO_FACES, 2.5, "count: expected a whole number, found 2.5"),
+        ([[0.0], [1.0, 2.0]], None, 1, "positions: expected an"),
         (SQUARE, None, 5, "at most 4, the number of distinct places of the shape, found 5"),
         (np.zeros((9, 3)), [[0, 1, 2]], 2, "at most 1,"),
         (SQUARE, [[0, 1, 4]], 2, "vertices 0 to 3, found 0 to 4"),
         (SQUARE, [[0, 1, -1]], 2, "vertices 0 to 3, found -1 to 1"),
-        (np.zeros((0, 3)), None, 1, "n > 0"),
-        ([[0.0, np.nan, 0.0]], None, 1, "finite positions"),
+        (np.zeros((0, 3)), None, 1, "at least one point, found none"),
+        ([[0.0, np.nan, 0.0]], None, 1, "positions: point 0 has a coordinate that is not finite"),
     ],
 )
 def test_what_cannot_be_placed_is_refused(positions: object, faces: object, count: int, says: str) -> None:

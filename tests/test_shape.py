@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import struct
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -126,3 +128,17 @@ def test_positions_and_maps_must_fit(tmp_path):
     with pytest.raises(nm.FileError, match=r"b\.ply: expected the ending \.obj"):
         shape.write(tmp_path / "b.ply", shape.positions)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.obj"]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
+def test_a_named_pipe_is_written_to_although_nothing_may_be_replaced(tmp_path):
+    source, pipe = tmp_path / "a.obj", tmp_path / "pipe.obj"
+    source.write_text(TRIANGLE)
+    os.mkfifo(pipe)
+    received: list[str] = []
+    reader = threading.Thread(target=lambda: received.append(pipe.read_text()), daemon=True)
+    reader.start()
+    shape = nm.read(source)
+    shape.write(pipe, shape.positions, overwrite=False)
+    reader.join(10)
+    assert received == [TRIANGLE]

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
     from neuralmls.pipeline import deform
     from neuralmls.placement import farthest_points
+    from neuralmls.point_tree import PointTree
     from neuralmls.shape import Shape, read
     from neuralmls.weights import InverseDistanceWeights, NeuralWeights, Weights
     from neuralmls.weights.softmax import softmax
@@ -33,6 +34,7 @@ __all__ = [
     "InverseDistanceWeights",
     "NeuralMLSError",
     "NeuralWeights",
+    "PointTree",
     "Shape",
     "Weights",
     "__version__",
@@ -53,6 +55,7 @@ _HOMES = {
     "InverseDistanceWeights": "weights",
     "NeuralMLSError": "errors",
     "NeuralWeights": "weights",
+    "PointTree": "point_tree",
     "Shape": "shape",
     "Weights": "weights",
     "deform": "pipeline",

@@ -36,6 +36,11 @@ def inverse_distance_logits(
     progress: _Progress,
 ) -> NDArray[np.float32]: ...
 
+class PointTree:
+    def __new__(
+        cls, x: NDArray[np.float64], centre: Sequence[float], half: float, progress: _Progress
+    ) -> PointTree: ...
+
 class Network:
     def __new__(
         cls,
@@ -56,6 +61,7 @@ class Network:
     @property
     def layers(self) -> list[tuple[NDArray[np.float32], NDArray[np.float32]]]: ...
     def logits(self, x: NDArray[np.float64], progress: _Progress) -> NDArray[np.float32]: ...
+    def logits_of_tree(self, tree: PointTree, progress: _Progress) -> NDArray[np.float32]: ...
 
 def fit(
     p: NDArray[np.float64],
@@ -81,5 +87,10 @@ class Deformer:
         transform: str,
     ) -> Deformer: ...
     def deform(
-        self, q: NDArray[np.float64], temperature: float, maps: bool, progress: _Progress
+        self,
+        q: NDArray[np.float64],
+        temperature: float,
+        maps: bool,
+        out: NDArray[np.float64] | None,
+        progress: _Progress,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]: ...

@@ -23,6 +23,8 @@ def as_points(name: str, values: ArrayLike, dimension: int | None = None) -> NDA
         The values are not numbers of that shape, or one is not finite.
     """
     try:
+        if np.iscomplexobj(values):
+            raise TypeError("they are complex")
         points = np.ascontiguousarray(values, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise ArgumentError(f"{name}: expected an (n, d) array of numbers: {error}") from error

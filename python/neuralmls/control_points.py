@@ -121,7 +121,10 @@ class ControlPoints:
             if name not in self.names:
                 near = difflib.get_close_matches(name, self.names, n=1, cutoff=0.0)
                 raise ArgumentError(f"there is no control point '{name}'; the nearest name is '{near[0]}'")
-            step = np.asarray(offset, dtype=np.float64)
+            try:
+                step = np.asarray(offset, dtype=np.float64)
+            except (TypeError, ValueError):
+                step = np.empty(0)
             if step.shape != (self.dimension,) or not np.isfinite(step).all():
                 raise ArgumentError(f"'{name}' needs {self.dimension} finite numbers to move by, found {offset!r}")
             targets[self.names.index(name)] += step

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from neuralmls import _core
 from neuralmls.arrays import Progress, as_number, as_points
 from neuralmls.errors import ArgumentError
+from neuralmls.point_tree import PointTree
 from neuralmls.protocol import Weights
 
 Transform: TypeAlias = Literal["rigid", "similarity", "affine"]
@@ -26,7 +27,7 @@ class Deformer:
     Parameters
     ----------
     x : (n, d), d = 1, 2 or 3
-        The points, in any units.
+        The points, in any units; or a `PointTree` of them, which saves time where several networks are bound to them.
     weights : Weights
         `NeuralWeights`, `InverseDistanceWeights`, or anything with `control_points` and `logits`.
     transform : "rigid", "similarity" or "affine"
@@ -64,10 +65,13 @@ class Deformer:
         self._dtype = np.dtype(np.float32 if single else np.float64)
         p = as_points("control_points", weights.control_points)
         points = as_points("x", x, p.shape[1])
-        logits = np.ascontiguousarray(weights.logits(points, progress=progress), dtype=np.float32)
+        logits = np.ascontiguousarray(
+            weights.logits(x if isinstance(x, PointTree) else points, progress=progress), dtype=np.float32
+        )
         if logits.shape != (len(points), len(p)):
             raise ArgumentError(f"logits: expected shape {(len(points), len(p))}, found {logits.shape}")
         self._p = p
+        self._count = len(points)
         self._core = _core.Deformer(points, p, logits, transform)
 
     @overload
@@ -77,6 +81,7 @@ class Deformer:
         temperature: float = ...,
         *,
         return_maps: Literal[False] = ...,
+        out: NDArray[np.float64] | None = ...,
         progress: Progress | None = ...,
     ) -> Floats: ...
 
@@ -87,6 +92,7 @@ class Deformer:
         temperature: float = ...,
         *,
         return_maps: Literal[True],
+        out: NDArray[np.float64] | None = ...,
         progress: Progress | None = ...,
     ) -> tuple[Floats, NDArray[np.float64]]: ...
 
@@ -96,6 +102,7 @@ class Deformer:
         temperature: float = 1.0,
         *,
         return_maps: bool = False,
+        out: NDArray[np.float64] | None = None,
         progress: Progress | None = None,
     ) -> Floats | tuple[Floats, NDArray[np.float64]]:
         """Return where the points go when the control points go to `targets`.
@@ -108,6 +115,8 @@ class Deformer:
             Of the softmax: below 1 parts move more apart from each other, above 1 more together.
         return_maps : bool
             Also return the local maps `M`, (n, d, d) float64.
+        out : (n, d) C-contiguous float64, optional
+            Where to write the result, which is then returned; for a drag, so that no frame asks for memory.
         progress : callable, optional
             Told the fraction done, from 0 to 1; what it raises stops the call.
 
@@ -124,6 +133,14 @@ class Deformer:
         if len(q) != len(self._p):
             raise ArgumentError(f"targets: expected {len(self._p)} of them, found {len(q)}")
         t = as_number("temperature", temperature, 0)
-        positions, maps = self._core.deform(q, t, return_maps, progress)
-        y: Floats = positions.astype(self._dtype, copy=False)
+        if out is not None and not (
+            isinstance(out, np.ndarray)
+            and out.shape == (self._count, q.shape[1])
+            and out.dtype == np.float64
+            and out.flags.c_contiguous
+            and out.flags.writeable
+        ):
+            raise ArgumentError(f"out: expected a writeable C-contiguous float64 array {(self._count, q.shape[1])}")
+        positions, maps = self._core.deform(q, t, return_maps, out, progress)
+        y: Floats = positions if out is not None else positions.astype(self._dtype, copy=False)
         return (y, maps) if maps is not None else y

@@ -35,7 +35,7 @@ def deform(
         Points: float32 or float64, of any memory layout; never changed.
     p, q : (m, d)
         Control points at rest and moved, in the coordinates of `x`.
-    weights : "neural", "inverse-distance", or a weight function
+    weights : "neural", "inverse-distance", or a weight function of the control points `p`
     transform : "rigid", "similarity" or "affine"
     temperature : float > 0
     seed : int
@@ -64,17 +64,19 @@ def deform(
     points = as_points("x", x, sources.shape[1])
     if not isinstance(weights, str):
         function: Weights = weights
+        if not np.array_equal(as_points("weights.control_points", function.control_points), sources):
+            raise ArgumentError("weights: expected a weight function of the control points p, found one of others")
     elif weights == "neural":
         function = NeuralWeights.fit(sources, bounds=_bounds(points), seed=seed)
     elif weights == "inverse-distance":
-        function = InverseDistanceWeights(sources)
+        function = InverseDistanceWeights(sources, bounds=_bounds(points))
     else:
         raise ArgumentError(f"weights: expected 'neural' or 'inverse-distance', found '{weights}'")
     return Deformer(x, function, transform=transform).deform(targets, temperature)
 
 
 def _bounds(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> ArrayLike | None:
-    """The points' box, or None where it has no size (the network then measures by the control points)."""
+    """The points' box, or None where it has no size (the weights then measure by something else)."""
     if len(points) == 0 or (points == points[0]).all():
         return None
     return np.stack([points.min(axis=0), points.max(axis=0)])

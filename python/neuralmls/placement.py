@@ -10,12 +10,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from neuralmls.arrays import as_count, as_points
 from neuralmls.errors import ArgumentError
 
 # Candidates of each kind, as a minimum and for each control point: enough that more of them move no point by
 # more than about a hundredth of the shape.
 LEAST = 20_000
 EACH = 50
+# Points at the most: the candidates have to fit into memory.
+MOST = 100_000
 
 
 def farthest_points(positions: ArrayLike, faces: ArrayLike | None, count: int, *, seed: int = 0) -> NDArray[np.float64]:
@@ -26,8 +29,8 @@ def farthest_points(positions: ArrayLike, faces: ArrayLike | None, count: int, *
     positions : (n, d) float64, in file coordinates
     faces : (f, 3) integers, or None for a point cloud
         Faces without area are passed over. If none has any, the vertices are taken as a cloud.
-    count : int, at least 1
-    seed : int
+    count : int, 1 to 100,000
+    seed : int, 0 to 2^64 - 1
         The same seed gives the same points.
 
     Returns
@@ -37,18 +40,19 @@ def farthest_points(positions: ArrayLike, faces: ArrayLike | None, count: int, *
     Raises
     ------
     ArgumentError
-        `count` is less than 1 or more than the shape has distinct places; a face names no vertex.
+        `count` is out of its range or more than the shape has distinct places; the positions are no finite points;
+        a face names no vertex.
 
     Examples
     --------
     >>> farthest_points([[0.0, 0.0], [1.0, 0.0], [5.0, 0.0]], None, 2).tolist()
     [[5.0, 0.0], [0.0, 0.0]]
     """
-    x = np.asarray(positions, dtype=np.float64)
-    if count < 1:
-        raise ArgumentError(f"expected a count of at least 1, found {count}")
-    if x.ndim != 2 or not len(x) or not np.isfinite(x).all():
-        raise ArgumentError(f"expected finite positions of shape (n, d) with n > 0, found {x.shape}")
+    x = as_points("positions", positions)
+    if not len(x):
+        raise ArgumentError("positions: expected at least one point, found none")
+    as_count("count", count, 1, MOST)
+    as_count("seed", seed, 0, 2**64 - 1)
     rng = np.random.default_rng(seed)
     origin = (x.min(axis=0) + x.max(axis=0)) / 2  # samples keep their digits far from the origin
     size = max(LEAST, EACH * count)

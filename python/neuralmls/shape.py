@@ -128,7 +128,7 @@ class Shape:
         data, side_files = self._encode(positions, maps, target.stem)
         files = {target: data} | {target.parent / name: content for name, _, content in side_files}
         for file in files:
-            if not overwrite and file.exists():
+            if not overwrite and file.is_file():  # a pipe holds nothing that could be lost
                 raise ArgumentError(f"{file}: there is such a file already")
         for file in reversed(files):  # the shape last: whoever finds it, finds all that it needs
             write_atomically(file, files[file])

@@ -135,6 +135,17 @@ def test_summary_for_people(run):
     assert top[-1] == "%"
 
 
+def test_control_points_that_the_training_cannot_part_are_named(run, here):
+    (here / "near.csv").write_text("name,x,y,z\nseat,0,0.5,0\nseat-too,0,0.5,1e-13\nfoot,0,-0.5,0\n")
+    ran = run("deform", "shape.obj", "--points", "near.csv", "-o", "a.obj", "--move", "seat=0,0.1,0", "--width", 64)
+    assert ran.code == 0
+    assert ran.err.count("\n") == 1
+    assert ran.err.startswith("neuralmls: warning: after 2,000 steps of training, control points still share")
+    assert "'seat'" in ran.err
+    assert "'seat-too'" in ran.err
+    assert "'foot'" not in ran.err
+
+
 def test_many_control_points_are_listed_when_asked_for(run, here):
     lines = [f"p{i},{i / 30},{i / 20},0" for i in range(30)]
     (here / "many.csv").write_text("\n".join(["name,x,y,z", *lines]) + "\n")

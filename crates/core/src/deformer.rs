@@ -2,15 +2,17 @@
 
 use crate::error::{check_points, Error};
 use crate::frame::Frame;
+use crate::mls::lanes::{BatchPoints, LaneHandles, Scratch, BATCH};
 use crate::mls::{Handles, Transform};
 use crate::parallel::{for_each_block, for_each_block_pair};
 use crate::progress::{report, Progress};
-use crate::softmax::{check_temperature, relative_weights};
+use crate::softmax::{check_temperature, relative_weights, PackedWeights};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Points between two reports of progress.
 const CHUNK: usize = 1 << 16;
 /// Points that one thread takes at a time.
-const BLOCK: usize = 256;
+const BLOCK: usize = 1024;
 
 /// Points bound to the logits that a weight function gave for them. Dragging changes the targets alone.
 ///
@@ -30,6 +32,8 @@ pub struct Deformer {
     p: Vec<f64>,
     logits: Vec<f32>,
     transform: Transform,
+    /// The weights of the last frame.
+    last: Mutex<Option<Arc<PackedWeights>>>,
 }
 
 /// The result of [`Deformer::deform`].
@@ -65,7 +69,7 @@ impl Deformer {
             return Err(Error::argument("logits", format!("the one at ({}, {}) is NaN", at / m, at % m)));
         }
         let frame = Frame::around(&x, dim);
-        Ok(Deformer { dim, frame, x, p: p.to_vec(), logits, transform })
+        Ok(Deformer { dim, frame, x, p: p.to_vec(), logits, transform, last: Mutex::new(None) })
     }
 
     /// Points, n.
@@ -81,6 +85,8 @@ impl Deformer {
     /// Where the points go when the control points go to `q` (m x dim), with the weights at `temperature` > 0; with the local maps
     /// if `maps`. If every target is its control point, the positions are the input bit for bit.
     ///
+    /// The first frame at a temperature computes the weights; the next ones find them.
+    ///
     /// # Errors
     /// [`Error::Cancelled`]; where `q` does not fit, is not finite, or the temperature is not above 0.
     pub fn deform(
@@ -90,74 +96,154 @@ impl Deformer {
         maps: bool,
         progress: &mut Progress<'_>,
     ) -> Result<Deformed, Error> {
+        let mut positions = vec![0.0; self.x.len()];
+        let mut matrices = maps.then(|| vec![0.0; self.x.len() * self.dim]);
+        self.deform_into(q, temperature, &mut positions, matrices.as_deref_mut(), progress)?;
+        Ok(Deformed { positions, maps: matrices })
+    }
+
+    /// [`Deformer::deform`] into memory that the caller has: `y` (n x dim), and `maps` (n x dim x dim) where they are wanted.
+    ///
+    /// # Errors
+    /// As [`Deformer::deform`], and where `y` or `maps` have another size. What they hold then is not a result.
+    pub fn deform_into(
+        &self,
+        q: &[f64],
+        temperature: f64,
+        y: &mut [f64],
+        maps: Option<&mut [f64]>,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), Error> {
         check_points("q", q, self.dim)?;
         check_temperature(temperature)?;
         if q.len() != self.p.len() {
             let (found, expected) = (q.len() / self.dim, self.p.len() / self.dim);
             return Err(Error::argument("q", format!("expected {expected} targets, found {found}")));
         }
-        let mut deformed =
-            Deformed { positions: self.x.clone(), maps: maps.then(|| vec![0.0; self.x.len() * self.dim]) };
-        match self.dim {
-            1 => self.deform_in::<1>(q, temperature, &mut deformed, progress)?,
-            2 => self.deform_in::<2>(q, temperature, &mut deformed, progress)?,
-            _ => self.deform_in::<3>(q, temperature, &mut deformed, progress)?,
+        let room = |name, found: usize, expected: usize| {
+            let message = || format!("expected room for {expected} numbers, found {found}");
+            if found == expected {
+                Ok(())
+            } else {
+                Err(Error::argument(name, message()))
+            }
+        };
+        room("y", y.len(), self.x.len())?;
+        if let Some(maps) = &maps {
+            room("maps", maps.len(), self.x.len() * self.dim)?;
         }
-        Ok(deformed)
+        let unmoved = q == self.p;
+        if !unmoved || maps.is_some() {
+            match self.dim {
+                1 => self.deform_in::<1>(q, temperature, y, maps, progress)?,
+                2 => self.deform_in::<2>(q, temperature, y, maps, progress)?,
+                _ => self.deform_in::<3>(q, temperature, y, maps, progress)?,
+            }
+        }
+        if unmoved {
+            y.copy_from_slice(&self.x);
+        }
+        report(progress, 1.0)
     }
 
     fn deform_in<const D: usize>(
         &self,
         q: &[f64],
         temperature: f64,
-        deformed: &mut Deformed,
+        y: &mut [f64],
+        maps: Option<&mut [f64]>,
         progress: &mut Progress<'_>,
     ) -> Result<(), Error> {
         let enter = |points: &[f64]| -> Vec<[f64; D]> {
             points.chunks_exact(D).map(|point| self.frame.enter(point)).collect()
         };
-        let (p, handles_q) = (enter(&self.p), enter(q));
-        let handles = Handles::new(&p, &handles_q, self.transform);
-        let unmoved = q == self.p;
-        let m = p.len();
-        let one = |index: usize, relative: &mut [f64], y: &mut [f64], map: Option<&mut [f64]>| {
-            let dominant = relative_weights(&self.logits[m * index..m * (index + 1)], temperature, relative);
-            let x = self.frame.enter(y);
-            let local = handles.deform(&x, relative, dominant);
-            if !unmoved {
-                for (y, d) in y.iter_mut().zip(local.displacement) {
-                    *y += self.frame.half * d;
-                }
-            }
-            if let Some(map) = map {
-                map.copy_from_slice(local.map.as_flattened());
-            }
-        };
-        let chunks = self.len().div_ceil(CHUNK).max(1);
-        for (chunk, y) in deformed.positions.chunks_mut(CHUNK * D).enumerate() {
-            report(progress, chunk as f64 / chunks as f64)?;
-            let first = |block: usize| CHUNK * chunk + BLOCK * block;
-            match &mut deformed.maps {
-                None => for_each_block(y, BLOCK * D, |block, y| {
-                    let mut relative = vec![0.0; m];
-                    for (i, y) in y.chunks_exact_mut(D).enumerate() {
-                        one(first(block) + i, &mut relative, y, None);
-                    }
-                }),
-                Some(maps) => {
-                    let maps = &mut maps[CHUNK * chunk * D * D..][..y.len() * D];
-                    for_each_block_pair(y, BLOCK * D, maps, BLOCK * D * D, |block, y, maps| {
-                        let mut relative = vec![0.0; m];
-                        for (i, (y, map)) in
-                            y.chunks_exact_mut(D).zip(maps.chunks_exact_mut(D * D)).enumerate()
-                        {
-                            one(first(block) + i, &mut relative, y, Some(map));
-                        }
-                    });
-                }
+        let (p, q) = (enter(&self.p), enter(q));
+        let handles = Handles::new(&p, &q, self.transform);
+        let lanes = handles.lanes(self.frame).map(|lanes| (lanes, self.weights(temperature)));
+        let motion =
+            Motion { x: &self.x, logits: &self.logits, frame: self.frame, temperature, handles, lanes };
+        let mut maps = maps.unwrap_or_default();
+        for (chunk, y) in y.chunks_mut(CHUNK * D).enumerate() {
+            let first = CHUNK * chunk;
+            report(progress, first as f64 / self.len() as f64)?;
+            if maps.is_empty() {
+                for_each_block(y, BLOCK * D, |block, y| motion.block(first + BLOCK * block, y, &mut []));
+            } else {
+                let (now, later) = maps.split_at_mut(y.len() * D);
+                maps = later;
+                for_each_block_pair(y, BLOCK * D, now, BLOCK * D * D, |block, y, maps| {
+                    motion.block(first + BLOCK * block, y, maps);
+                });
             }
         }
-        report(progress, 1.0)
+        Ok(())
+    }
+
+    /// The packed weights at `temperature`: those of the last frame, or new ones in their place.
+    fn weights(&self, temperature: f64) -> Arc<PackedWeights> {
+        // Not locked while they are computed: this thread may meanwhile take up another frame of the same deformer.
+        let last = {
+            let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+            match &*last {
+                Some(weights) if weights.temperature() == temperature => return weights.clone(),
+                _ => last.take(),
+            }
+        };
+        let memory = last.and_then(|last| Arc::try_unwrap(last).ok());
+        let m = self.p.len() / self.dim;
+        let weights = Arc::new(PackedWeights::new(&self.logits, m, temperature, memory));
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(weights.clone());
+        weights
+    }
+}
+
+/// One frame: what is the same for all of its points.
+struct Motion<'a, const D: usize> {
+    x: &'a [f64],
+    logits: &'a [f32],
+    frame: Frame,
+    temperature: f64,
+    handles: Handles<'a, D>,
+    /// The kernel that takes many points at a time, where there is one, and its weights.
+    lanes: Option<(LaneHandles, Arc<PackedWeights>)>,
+}
+
+impl<const D: usize> Motion<'_, D> {
+    /// Moves the points from `first` (a multiple of [`BLOCK`]) on into `y`; their maps into `maps` unless it is empty.
+    fn block(&self, first: usize, y: &mut [f64], maps: &mut [f64]) {
+        let n = y.len() / D;
+        let Some((lanes, weights)) = &self.lanes else {
+            return self.one_by_one(first, 0..n, y, maps);
+        };
+        let (mut scratch, mut unsound) = (Scratch::new(), Vec::new());
+        for at in (0..n).step_by(BATCH) {
+            let end = n.min(at + BATCH);
+            let x = &self.x[(first + at) * D..(first + end) * D];
+            let maps = if maps.is_empty() { &mut [] } else { &mut maps[at * D * D..end * D * D] };
+            let points = BatchPoints { x, y: &mut y[at * D..end * D], maps };
+            lanes.deform(weights.blocks(first + at), points, &mut scratch);
+            unsound.extend(scratch.unsound(end - at).map(|lane| at + lane));
+        }
+        self.one_by_one(first, unsound.into_iter(), y, maps);
+    }
+
+    /// The twin of the kernel: each point by itself, from its logits.
+    fn one_by_one(&self, first: usize, which: impl Iterator<Item = usize>, y: &mut [f64], maps: &mut [f64]) {
+        let m = self.logits.len() / (self.x.len() / D);
+        let mut relative = vec![0.0; m];
+        for i in which {
+            let index = first + i;
+            let logits = &self.logits[m * index..m * (index + 1)];
+            let dominant = relative_weights(logits, self.temperature, &mut relative);
+            let x = &self.x[D * index..D * (index + 1)];
+            let local = self.handles.deform(&self.frame.enter(x), &relative, dominant);
+            for (k, d) in local.displacement.into_iter().enumerate() {
+                y[D * i + k] = x[k] + self.frame.half * d;
+            }
+            if !maps.is_empty() {
+                maps[D * D * i..D * D * (i + 1)].copy_from_slice(local.map.as_flattened());
+            }
+        }
     }
 }
 

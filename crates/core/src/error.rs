@@ -38,7 +38,7 @@ pub(crate) fn check_points(name: &'static str, points: &[f64], dim: usize) -> Re
     if !(1..=3).contains(&dim) {
         return Err(Error::argument(name, format!("expected 1, 2 or 3 coordinates a point, found {dim}")));
     }
-    if points.len() % dim != 0 {
+    if !points.len().is_multiple_of(dim) {
         return Err(Error::argument(name, format!("{} numbers are not whole points of {dim}", points.len())));
     }
     if let Some(at) = points.iter().position(|c| !c.is_finite()) {

@@ -69,6 +69,16 @@ impl Frame {
         std::array::from_fn(|k| (x[k] - self.centre[k]) / self.half)
     }
 
+    /// The same in single precision, with zeros beyond the point's dimension. Coordinates of more than 1e30 are cut off there, so
+    /// that nothing that is computed from them overflows.
+    pub(crate) fn enter_single(&self, x: &[f64]) -> [f32; 3] {
+        let mut out = [0.0; 3];
+        for (k, x) in x.iter().enumerate() {
+            out[k] = ((x - self.centre[k]) / self.half).clamp(-1e30, 1e30) as f32;
+        }
+        out
+    }
+
     /// Points of the world in this frame.
     pub fn enter_all(&self, points: &[f64], dim: usize) -> Vec<f64> {
         points.iter().enumerate().map(|(at, c)| (c - self.centre[at % dim]) / self.half).collect()

@@ -8,6 +8,8 @@
 //! | [`logits`] | weight functions: what each says of a point, before the softmax (inverse distance, neural) |
 //! | [`softmax`] | logits at a temperature -> weights, and the form of them that stays accurate however small T is |
 //! | [`mls`] | weights and moved control points -> a rigid, similarity or affine map a point |
+//! | [`tree`] | a kd-tree over points, built once a shape |
+//! | `simd` | one kernel, compiled for several instruction sets |
 //! | [`deformer`] | joins them: points bound to their logits once, deformed many times |
 //!
 //! Source: Shechter, Hanocka, Metzer, Giryes, Cohen-Or, "NeuralMLS: Geometry-Aware Control Point Deformation",
@@ -22,7 +24,9 @@ pub mod logits;
 pub mod mls;
 mod parallel;
 pub mod progress;
+mod simd;
 pub mod softmax;
+pub mod tree;
 
 pub use deformer::{Deformed, Deformer};
 pub use error::Error;
@@ -30,3 +34,4 @@ pub use frame::Frame;
 pub use logits::inverse_distance::InverseDistance;
 pub use logits::neural::{Fit, Layer, Network, Schedule, Training};
 pub use mls::Transform;
+pub use tree::{Order, PointTree};

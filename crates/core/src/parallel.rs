@@ -1,5 +1,27 @@
 //! Loops over blocks, on all threads where the feature `threads` is on. Which thread does a block never changes its result.
 
+use std::marker::PhantomData;
+use std::ops::Range;
+#[cfg(feature = "threads")]
+use std::{
+    sync::{
+        atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed},
+        Condvar, Mutex, PoisonError,
+    },
+    time::Duration,
+};
+
+use crate::error::Error;
+use crate::progress::{report, Progress};
+
+/// Threads that share the work.
+pub(crate) fn threads() -> usize {
+    #[cfg(feature = "threads")]
+    return rayon::current_num_threads();
+    #[cfg(not(feature = "threads"))]
+    return 1;
+}
+
 /// Calls `work(index, block)` for each block of `size` elements of `out` (the last may be shorter).
 pub(crate) fn for_each_block<T: Send>(
     out: &mut [T],
@@ -33,4 +55,140 @@ pub(crate) fn for_each_block_pair<A: Send, B: Send>(
     }
     #[cfg(not(feature = "threads"))]
     a.chunks_mut(size_a).zip(b.chunks_mut(size_b)).enumerate().for_each(|(index, (a, b))| work(index, a, b));
+}
+
+/// Calls `work(task, stop)` for each task below `count`, on all threads, each of which takes the next one when it is free. The
+/// calling thread reports meanwhile, from `span.start` to `span.end`; once the caller wants to stop, `stop()` is true and no
+/// further task begins.
+pub(crate) fn for_each_task(
+    count: usize,
+    span: Range<f64>,
+    progress: &mut Progress<'_>,
+    work: impl Fn(usize, &(dyn Fn() -> bool + Sync)) + Sync,
+) -> Result<(), Error> {
+    let fraction = |done: usize| span.start + (span.end - span.start) * done as f64 / count as f64;
+    #[cfg(feature = "threads")]
+    {
+        let queue = Queue::default();
+        let run = |queue: &Queue| {
+            let stop = || queue.stopped.load(Relaxed);
+            while !stop() {
+                let task = queue.next.fetch_add(1, Relaxed);
+                if task >= count {
+                    break;
+                }
+                work(task, &stop);
+                queue.done.fetch_add(1, Relaxed);
+            }
+        };
+        let threads = rayon::current_num_threads().min(count);
+        rayon::in_place_scope(|scope| {
+            for _ in 0..threads {
+                scope.spawn(|_| {
+                    // Whatever becomes of the work, the calling thread must not wait for ever.
+                    let _finished = Finished(&queue);
+                    run(&queue);
+                });
+            }
+            queue.watch(threads, &mut |done| report(progress, fraction(done)))
+        })
+    }
+    #[cfg(not(feature = "threads"))]
+    {
+        for task in 0..count {
+            report(progress, fraction(task))?;
+            work(task, &|| false);
+        }
+        Ok(())
+    }
+}
+
+/// How far the tasks are.
+#[cfg(feature = "threads")]
+#[derive(Default)]
+struct Queue {
+    next: AtomicUsize,
+    done: AtomicUsize,
+    stopped: AtomicBool,
+    finished: Mutex<usize>,
+    changed: Condvar,
+}
+
+/// Counts a thread as finished when it is dropped.
+#[cfg(feature = "threads")]
+struct Finished<'a>(&'a Queue);
+
+#[cfg(feature = "threads")]
+impl Drop for Finished<'_> {
+    fn drop(&mut self) {
+        *self.0.finished.lock().unwrap_or_else(PoisonError::into_inner) += 1;
+        self.0.changed.notify_all();
+    }
+}
+
+#[cfg(feature = "threads")]
+impl Queue {
+    /// Reports every 20 ms until all `threads` have finished.
+    fn watch(&self, threads: usize, report: &mut dyn FnMut(usize) -> Result<(), Error>) -> Result<(), Error> {
+        let mut result = report(0);
+        loop {
+            self.stopped.fetch_or(result.is_err(), Relaxed);
+            // Where the calling thread is itself one of the pool's, it must do the work that waits for it.
+            while rayon::yield_now() == Some(rayon::Yield::Executed) {}
+            let finished = self.finished.lock().unwrap_or_else(PoisonError::into_inner);
+            let (finished, _) = self
+                .changed
+                .wait_timeout_while(finished, Duration::from_millis(20), |finished| *finished < threads)
+                .unwrap_or_else(PoisonError::into_inner);
+            if *finished == threads {
+                return result;
+            }
+            drop(finished);
+            if result.is_ok() {
+                result = report(self.done.load(Relaxed));
+            }
+        }
+    }
+}
+
+/// Rows of a matrix that several threads fill, each its own ones.
+pub(crate) struct SharedRows<'a> {
+    start: *mut f32,
+    rows: usize,
+    width: usize,
+    matrix: PhantomData<&'a mut [f32]>,
+}
+
+// SAFETY: it hands out rows under the promise of `row` only, by which no two threads have the same one.
+unsafe impl Sync for SharedRows<'_> {}
+
+impl<'a> SharedRows<'a> {
+    pub(crate) fn new(matrix: &'a mut [f32], width: usize) -> SharedRows<'a> {
+        let rows = matrix.len() / width;
+        SharedRows { start: matrix.as_mut_ptr(), rows, width, matrix: PhantomData }
+    }
+
+    /// Tells the processor that row `index` is going to be written, where it can be told.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, index: usize) {
+        assert!(index < self.rows);
+        #[cfg(target_arch = "x86_64")]
+        {
+            use std::arch::x86_64::{_mm_prefetch, _MM_HINT_ET0};
+            // SAFETY: a prefetch reads and writes nothing, and the row lies in the matrix.
+            unsafe { _mm_prefetch::<_MM_HINT_ET0>(self.start.add(index * self.width).cast()) }
+        }
+    }
+
+    /// Row `index`.
+    ///
+    /// # Safety
+    /// As long as the row is in use, nobody else may ask for the same one.
+    #[allow(clippy::mut_from_ref)]
+    #[inline(always)]
+    pub(crate) unsafe fn row(&self, index: usize) -> &mut [f32] {
+        assert!(index < self.rows);
+        // SAFETY: the row lies in the matrix, which is borrowed mutably as long as `self` lives.
+        unsafe { std::slice::from_raw_parts_mut(self.start.add(index * self.width), self.width) }
+    }
 }

@@ -6,6 +6,10 @@
 
 use crate::error::{check_number, Error};
 
+mod packed;
+
+pub(crate) use packed::{PackedWeights, Row, LANES};
+
 /// The weights of one point, in the form that [`crate::mls`] takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dominant {

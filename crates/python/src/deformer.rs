@@ -1,7 +1,7 @@
 //! Points bound to their logits.
 
 use neuralmls_core::Transform;
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::errors::{argument, from_core};
@@ -42,20 +42,29 @@ impl Deformer {
         Ok(Deformer { inner, dim })
     }
 
-    #[pyo3(signature = (q, temperature, maps, progress))]
+    /// Writes the positions into `out`, n x d, or into a new array.
+    #[pyo3(signature = (q, temperature, maps, out, progress))]
     fn deform<'py>(
         &self,
         py: Python<'py>,
         q: PyReadonlyArray2<'py, f64>,
         temperature: f64,
         maps: bool,
+        out: Option<Bound<'py, PyArray2<f64>>>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Deformed<'py>> {
-        let targets = q.as_slice()?;
-        let deformed = run(py, progress, |report| self.inner.deform(targets, temperature, maps, report))?;
         let (n, d) = (self.inner.len(), self.dim);
-        let positions = PyArray1::from_vec(py, deformed.positions).reshape([n, d])?;
-        let maps = deformed.maps.map(|maps| PyArray1::from_vec(py, maps).reshape([n, d, d])).transpose()?;
+        let targets = q.as_slice()?;
+        let positions = out.unwrap_or_else(|| PyArray2::zeros(py, [n, d], false));
+        let maps = maps.then(|| PyArray3::zeros(py, [n, d, d], false));
+        {
+            // Refused if anything else reads or writes it meanwhile.
+            let mut y = positions.try_readwrite()?;
+            let y = y.as_slice_mut()?;
+            let mut m = maps.as_ref().map(|maps| maps.try_readwrite()).transpose()?;
+            let m = m.as_mut().map(|maps| maps.as_slice_mut()).transpose()?;
+            run(py, progress, |report| self.inner.deform_into(targets, temperature, y, m, report))?;
+        }
         Ok((positions, maps))
     }
 }

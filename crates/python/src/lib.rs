@@ -17,7 +17,7 @@ mod _core {
     #[pymodule_export]
     use crate::shape_file::ShapeFile;
     #[pymodule_export]
-    use crate::weights::{fit, inverse_distance_logits, train, Network};
+    use crate::weights::{fit, inverse_distance_logits, train, Network, PointTree};
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
 }

@@ -45,6 +45,26 @@ pub(crate) fn inverse_distance_logits<'py>(
     matrix(py, logits, m)
 }
 
+/// Points ordered for the evaluation of networks of one frame.
+#[pyclass(frozen)]
+pub(crate) struct PointTree(neuralmls_core::PointTree);
+
+#[pymethods]
+impl PointTree {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        x: PyReadonlyArray2<'_, f64>,
+        centre: Vec<f64>,
+        half: f64,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<PointTree> {
+        let (dim, frame) = (x.shape()[1], frame(&centre, half)?);
+        let points = x.as_slice()?;
+        run(py, progress, |report| neuralmls_core::PointTree::new(points, dim, frame, report)).map(PointTree)
+    }
+}
+
 /// A trained network.
 #[pyclass(frozen)]
 pub(crate) struct Network(neuralmls_core::Network);
@@ -111,6 +131,18 @@ impl Network {
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let points = x.as_slice()?;
         let logits = run(py, progress, |report| self.0.logits(points, report))?;
+        matrix(py, logits, self.0.outputs())
+    }
+
+    /// Logits of the points of a tree, in their own order.
+    #[pyo3(signature = (tree, progress))]
+    fn logits_of_tree<'py>(
+        &self,
+        py: Python<'py>,
+        tree: &PointTree,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let logits = run(py, progress, |report| self.0.logits_of_tree(&tree.0, report))?;
         matrix(py, logits, self.0.outputs())
     }
 }

@@ -44,6 +44,30 @@ fn tables_of_every_kind() {
 }
 
 #[test]
+fn decimal_commas_are_refused_instead_of_taken_for_a_header() {
+    for (text, line, found) in [
+        ("0,5;1,2;3\n1;2;3\n", 1, "0,5"),
+        ("x;y;z\n1;2;-3,25\n", 2, "-3,25"),
+        ("id;x;y;z\n1;0,5;2;3\n", 2, "0,5"),
+        ("0,5 1,2 3\n1 2 3\n", 1, "0,5"),
+        ("x\ty\tz\n1\t2,5e-3\t3\n1\t2\t3\n", 2, "2,5e-3"),
+        ("O 0,5 1,5 2,5\nH 1 2 3\n", 1, "0,5"),
+        ("1;2;3\n1;2;3,5\n", 2, "3,5"),
+        ("1 2 3\n1 2,5 3\n", 2, "2,5"),
+        ("\"0,5\",\"1,2\",\"3\"\n1,2,3\n", 1, "0,5"),
+    ] {
+        let refused = refusal(text.as_bytes(), Format::Table);
+        let expected =
+            format!("line {line}: decimal commas are not read, expected a decimal point, found '{found}'");
+        assert_eq!(refused, expected, "{text}");
+    }
+    // Commas that separate columns, and a sentence with a number in it.
+    for text in ["0,5\n1,2\n", "1, 2,3\n", "2\nat 1,5 bar\nO 1 2 3\nH 4 5 6\n", "\"a,b\",1,2,3\n"] {
+        table(text);
+    }
+}
+
+#[test]
 fn quoted_numbers_stay_quoted() {
     assert_eq!(with(&table("\"1\",\"2\",\"3\"\n"), 1, 7.0), "\"1\",\"7\",\"3\"\n");
 }
@@ -73,7 +97,7 @@ fn broken_files_are_refused_with_their_line() {
         ("x,y,z\n1,2,3\n4,,6\n", "line 3: expected a finite number in column 2, found ''"),
         ("1 2 3\n4 nan 6\n", "line 2: expected a finite number in column 2, found 'nan'"),
         ("1 2 3\n4 5 1e999\n", "line 2: expected a finite number in column 3, found '1e999'"),
-        ("1,5;2,5;3,5\n", "line 1: expected a row of numbers, found '1,5;2,5;3,5'"),
+        ("1 m;2 m;3 m\n", "line 1: expected a row of numbers, found '1 m;2 m;3 m'"),
         ("3\n1 2 3\n4 5 6\n", "line 1: 3 rows are promised, but 2 follow"),
         ("x,y,z,name\n1,2,a,4\n", "line 2: expected a number in column 3"),
         ("x y z nx ny nz\n1 2 3 0 0 a\n", "line 2: expected a finite number in column 6, found 'a'"),

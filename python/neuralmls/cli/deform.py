@@ -84,6 +84,9 @@ def deform(
     for sentence in warnings:
         console.warning(sentence)
     result = deformation.deformed(source, control_points, choice, transform, temperature, stages)
+    for sentence in deformation.not_parted(control_points, choice, result):
+        console.warning(sentence)
+        warnings.append(sentence)
     with stages.stage("write"):
         files = _write(source, result, output, force=force)
     told = summary.summary(source, control_points, choice, transform, temperature, result)

@@ -13,9 +13,11 @@ from neuralmls.control_points import ControlPoints
 from neuralmls.deformer import Deformer, Floats, Transform
 from neuralmls.errors import FileError
 from neuralmls.shape import Shape
-from neuralmls.weights import InverseDistanceWeights, NeuralWeights
+from neuralmls.weights import InverseDistanceWeights, NeuralWeights, softmax
 
 LARGEST = 1e150  # units
+# A control point with less of the weight at its own place shares it; the training aims at 0.9.
+OWNED = 0.85
 
 
 @dataclass(frozen=True)
@@ -78,3 +80,18 @@ def deformed(
         handles = Deformer(points.sources, weights, transform=transform)
         missed = np.linalg.norm(handles.deform(points.targets, temperature) - points.targets, axis=1)
     return Deformation(y, maps, weights, missed)
+
+
+def not_parted(points: ControlPoints, choice: WeightsChoice, result: Deformation) -> list[str]:
+    """Warn of control points that the whole training did not part, and which then move together."""
+    if not isinstance(result.weights, NeuralWeights) or choice.steps is not None:
+        return []
+    own = np.diagonal(softmax(result.weights.logits(points.sources)))
+    names = [f"'{points.names[i]}'" for i in own.argsort() if own[i] < OWNED]
+    if not names:
+        return []
+    listed = ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
+    return [
+        f"after {result.weights.steps:,} steps of training, control points still share their places with others, "
+        f"and stop short of their targets: {listed}; they are probably too close together"
+    ]

@@ -28,7 +28,10 @@ AlphaOption = Annotated[
 ]
 EpsilonOption = Annotated[
     float | None,
-    typer.Option(help="Inverse-distance: above 0 caps the weight near a control point."),
+    typer.Option(
+        help="Inverse-distance: above 0 caps the weight near a control point; "
+        "distances count in halves of the shape's longest side."
+    ),
 ]
 WidthOption = Annotated[int | None, typer.Option(help="Neural: neurons of a hidden layer; 1024 if not given.")]
 StepsOption = Annotated[

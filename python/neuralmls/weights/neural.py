@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from neuralmls import _core
 from neuralmls.arrays import Progress, as_box, as_count, as_number, as_points
 from neuralmls.errors import ArgumentError, FileError
+from neuralmls.point_tree import PointTree
 
 FORMAT = "neuralmls-network-1"
 
@@ -109,13 +110,15 @@ class NeuralWeights:
         return len(self._losses)
 
     def logits(self, x: ArrayLike, *, progress: Progress | None = None) -> NDArray[np.float32]:
-        """Return the logits of the points `x` (n, d): (n, m).
+        """Return the logits of the points `x` (n, d), or of a `PointTree`: (n, m), in the points' own order.
 
         Raises
         ------
         ArgumentError
-            `x` does not hold finite points of the control points' dimension.
+            `x` does not hold finite points of the control points' dimension, or is a tree of another box.
         """
+        if isinstance(x, PointTree):
+            return self._network.logits_of_tree(x._core, progress)
         return self._network.logits(as_points("x", x, self._p.shape[1]), progress)
 
     def save(self, path: str | os.PathLike[str]) -> None:

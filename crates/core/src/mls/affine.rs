@@ -9,7 +9,7 @@ use super::moments::Moments;
 
 /// What stands for the missing extent of the control points, relative to the one they have. Smaller than the rotation's
 /// anchor: the residuals, unlike C, are exact where the anchor is right.
-const RIDGE: f64 = 1e-12;
+pub(super) const RIDGE: f64 = 1e-12;
 
 /// `moments` are those of the residuals of `g`.
 pub(super) fn linear<const D: usize>(moments: &Moments<D>, g: &Matrix<D>) -> Matrix<D> {

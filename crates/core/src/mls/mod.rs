@@ -6,6 +6,7 @@
 //! determine it, it follows the one map of its kind that fits all control points with equal weights ([`Anchor`]).
 
 mod affine;
+pub(crate) mod lanes;
 mod matrix;
 mod moments;
 mod rotation;
@@ -14,6 +15,7 @@ mod similarity;
 pub use matrix::Matrix;
 pub use rotation::best_rotation;
 
+use crate::frame::Frame;
 use crate::softmax::Dominant;
 use moments::Moments;
 
@@ -78,6 +80,21 @@ impl<'a, const D: usize> Handles<'a, D> {
     /// The map that fits all control points with equal weights.
     pub fn anchor(&self) -> &Anchor<D> {
         &self.anchor
+    }
+
+    /// The same map for many points at a time, in the coordinates of `frame`'s world; where there is a kernel for it (3D).
+    pub(crate) fn lanes(&self, frame: Frame) -> Option<lanes::LaneHandles> {
+        if D != 3 {
+            return None;
+        }
+        let three =
+            |m: &Matrix<D>| -> Matrix<3> { std::array::from_fn(|r| std::array::from_fn(|c| m[r][c])) };
+        let Anchor { rotation, scale, linear } = &self.anchor;
+        let anchor = Anchor { rotation: three(rotation), scale: *scale, linear: three(linear) };
+        let pairs = self.p.iter().zip(self.q);
+        let points =
+            pairs.map(|(p, q)| std::array::from_fn(|k| if k < 3 { p[k] } else { q[k - 3] })).collect();
+        Some(lanes::LaneHandles::new(points, self.transform, anchor, frame))
     }
 
     /// Where the point `x` goes, whose weights `relative` and `dominant` are as [`crate::softmax::relative_weights`] gives them.

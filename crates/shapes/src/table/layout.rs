@@ -109,8 +109,11 @@ impl Layout {
                     continue;
                 }
             }
-            // Labels are columns too, but a sentence with a number in it is no row.
-            if numeric.len() == fields.len() || numeric.len() >= 3 {
+            let row = is_row(numeric.len(), fields.len());
+            if let Some(found) = decimal_comma(line.bytes, separator, row) {
+                return Err(no_decimal_commas(line.number, found));
+            }
+            if row {
                 let layout = Layout {
                     separator,
                     start: line.start,
@@ -168,6 +171,9 @@ impl Layout {
             let field = fields[column].clone();
             let text = &line.bytes[field.clone()];
             let value = number::parse(text).ok_or_else(|| {
+                if has_decimal_comma(text) {
+                    return no_decimal_commas(line.number, text);
+                }
                 Error::at_line(
                     line.number,
                     format!("expected a finite number in column {}, found {}", column + 1, quote(text)),
@@ -176,6 +182,39 @@ impl Layout {
             Ok((field, value))
         })
     }
+}
+
+/// Labels are columns too, but a sentence with a number in it is no row.
+fn is_row(numbers: usize, fields: usize) -> bool {
+    numbers == fields || numbers >= 3
+}
+
+/// A number with a decimal comma in a line that would be a row if commas were points: it must not pass for a header.
+/// Where the commas of an unquoted `0,5 1,5` do not make a row of it, white space is what separates its columns.
+fn decimal_comma(line: &[u8], separator: Separator, row: bool) -> Option<&[u8]> {
+    let mut fields = Vec::new();
+    let separators = [Some(separator), (!row).then_some(Separator::WhiteSpace)];
+    separators.into_iter().flatten().find_map(|separator| {
+        separator.split(line, &mut fields);
+        let found = || fields.iter().map(|field| &line[field.clone()]);
+        let numbers = found().filter(|text| number::parse(text).is_some() || has_decimal_comma(text)).count();
+        found().find(|text| is_row(numbers, fields.len()) && has_decimal_comma(text))
+    })
+}
+
+fn has_decimal_comma(text: &[u8]) -> bool {
+    let Some(at) = text.iter().position(|&byte| byte == b',') else { return false };
+    let digit = |at: usize| text.get(at).is_some_and(u8::is_ascii_digit);
+    let mut point = text.to_vec();
+    point[at] = b'.';
+    at > 0 && digit(at - 1) && digit(at + 1) && number::parse(&point).is_some()
+}
+
+fn no_decimal_commas(line: u64, found: &[u8]) -> Error {
+    Error::at_line(
+        line,
+        format!("decimal commas are not read, expected a decimal point, found {}", quote(found)),
+    )
 }
 
 /// The number of rows that a line with nothing else promises: one with more columns must follow.

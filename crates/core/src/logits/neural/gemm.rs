@@ -4,7 +4,7 @@ use super::network::Layer;
 use crate::parallel::for_each_block;
 
 /// Neurons a block.
-pub(super) const ROWS: usize = 64;
+const ROWS: usize = 64;
 
 /// A matrix of which a product reads `rows x columns` numbers, `row` and `column` apart.
 #[derive(Clone, Copy)]

@@ -4,10 +4,13 @@
 //! logits. Shechter et al. 2022, section 3.
 
 mod adam;
+mod dense;
 mod features;
 mod gemm;
+mod hidden;
 mod initialise;
 mod network;
+mod piecewise;
 mod train;
 
 pub use network::{Layer, Network};

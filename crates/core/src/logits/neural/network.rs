@@ -1,16 +1,11 @@
 //! The network and its evaluation.
 
-use super::features;
-use super::gemm::{multiply, View};
+use super::{dense, features, piecewise};
 use crate::error::{check_points, Error};
 use crate::frame::Frame;
-use crate::parallel::for_each_block;
 use crate::progress::{report, Progress};
-
-/// Points evaluated at once by one thread: the activations of both hidden layers stay in its cache.
-const BLOCK: usize = 128;
-/// Points between two reports of progress.
-const CHUNK: usize = 1 << 14;
+use crate::simd::Simd;
+use crate::tree::{Order, PointTree, LEAF};
 
 /// One linear layer: `y = W x + b`.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,7 +50,7 @@ impl Network {
     ) -> Result<Network, Error> {
         check_points("network", &[], dim)?;
         let mut inputs = features::width(dim, &frequencies);
-        let whole = frequencies.len() % dim == 0;
+        let whole = frequencies.len().is_multiple_of(dim);
         for (index, layer) in layers.iter().enumerate() {
             if !whole || layer.bias.is_empty() || layer.weight.len() != layer.bias.len() * inputs {
                 return Err(Error::argument(
@@ -107,57 +102,65 @@ impl Network {
     /// # Errors
     /// [`Error::Cancelled`], or where `x` does not hold finite points of the network's dimension.
     pub fn logits(&self, x: &[f64], progress: &mut Progress<'_>) -> Result<Vec<f32>, Error> {
-        check_points("x", x, self.dim)?;
-        let (dim, m) = (self.dim, self.outputs());
-        let mut logits = vec![0.0; x.len() / dim * m];
-        let chunks = logits.len().div_ceil(CHUNK * m).max(1);
-        for (index, (x, logits)) in x.chunks(CHUNK * dim).zip(logits.chunks_mut(CHUNK * m)).enumerate() {
-            report(progress, index as f64 / chunks as f64)?;
-            for_each_block(logits, BLOCK * m, |block, logits| {
-                let from = BLOCK * dim * block;
-                self.evaluate(&x[from..from + logits.len() / m * dim], logits);
-            });
+        let n = check_points("x", x, self.dim)?;
+        if !self.frequencies.is_empty() || n <= LEAF {
+            return dense::logits(self, x, progress);
         }
-        report(progress, 1.0)?;
+        let tree = PointTree::new(x, self.dim, self.frame, &mut |done| progress(0.5 * done))?;
+        self.logits_of_tree(&tree, &mut |done| progress(0.5 + 0.5 * done))
+    }
+
+    /// The logits of a tree's points in the order in which they were given, row by row: n x m. For a shape that several networks
+    /// are evaluated at.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`], or where the tree's points are of another dimension or normalised by another frame than the
+    /// network's.
+    pub fn logits_of_tree(&self, tree: &PointTree, progress: &mut Progress<'_>) -> Result<Vec<f32>, Error> {
+        let mut logits = vec![0.0; tree.len() * self.outputs()];
+        self.write_logits_of_tree(tree, Order::Given, &mut logits, progress)?;
         Ok(logits)
+    }
+
+    /// The same into memory that is there already, which for a million points takes less time than new memory; in the order in which
+    /// the points were given, or that of the tree.
+    ///
+    /// # Errors
+    /// As [`Network::logits_of_tree`], and where `logits` is not n x m.
+    pub fn write_logits_of_tree(
+        &self,
+        tree: &PointTree,
+        order: Order,
+        logits: &mut [f32],
+        progress: &mut Progress<'_>,
+    ) -> Result<(), Error> {
+        if tree.dim() != self.dim || *tree.frame() != self.frame {
+            let message = "expected one in the dimension and the frame of the network, found another";
+            return Err(Error::argument("tree", message));
+        }
+        let (n, m) = (tree.len(), self.outputs());
+        if logits.len() != n * m {
+            let message = format!("expected room for {n} x {m} numbers, found {}", logits.len());
+            return Err(Error::argument("logits", message));
+        }
+        report(progress, 0.0)?;
+        if self.frequencies.is_empty() {
+            piecewise::write_logits(Simd::detect(), self, tree, order, logits, progress)?;
+        } else {
+            dense::write_logits(self, tree, order, logits, progress)?;
+        }
+        report(progress, 1.0)
     }
 
     /// What the first layer sees of `x`.
     pub(super) fn features(&self, x: &[f64]) -> Vec<f32> {
         let mut out = Vec::with_capacity(x.len() / self.dim * features::width(self.dim, &self.frequencies));
         for point in x.chunks_exact(self.dim) {
-            let normalised: [f32; 3] =
-                std::array::from_fn(|k| if k < self.dim { self.normalised(point[k], k) } else { 0.0 });
+            let normalised = self.frame.enter_single(point);
             features::append(&normalised[..self.dim], &self.frequencies, &mut out);
         }
         out
     }
-
-    fn normalised(&self, coordinate: f64, axis: usize) -> f32 {
-        ((coordinate - self.frame.centre[axis]) / self.frame.half) as f32
-    }
-
-    fn evaluate(&self, x: &[f64], logits: &mut [f32]) {
-        let mut input = self.features(x);
-        let points = x.len() / self.dim;
-        for layer in &self.layers[..2] {
-            let mut output = vec![0.0; points * layer.outputs()];
-            linear(layer, &input, &mut output);
-            relu(&mut output);
-            input = output;
-        }
-        linear(&self.layers[2], &input, logits);
-    }
-}
-
-/// `output = input W^T + b`, one row a point.
-fn linear(layer: &Layer, input: &[f32], output: &mut [f32]) {
-    let (k, m) = (layer.inputs(), layer.outputs());
-    for row in output.chunks_exact_mut(m) {
-        row.copy_from_slice(&layer.bias);
-    }
-    let transposed = View { data: &layer.weight, row: 1, column: k };
-    multiply(output.len() / m, k, m, View { data: input, row: k, column: 1 }, transposed, 1.0, output);
 }
 
 pub(super) fn relu(values: &mut [f32]) {
@@ -167,4 +170,4 @@ pub(super) fn relu(values: &mut [f32]) {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -4,9 +4,11 @@
 //! Where it differs from the paper: by default it does not stop after a fixed 48 steps but when every control point has most
 //! of the weight at its own place, because handles that do not own their place do not arrive at their targets.
 
+use super::adam::{Adam, Rates};
+use super::hidden::{Activations, Hidden};
 use super::initialise::Random;
 use super::network::{relu, Layer, Network};
-use super::{adam::Adam, features, gemm};
+use super::{features, gemm};
 use crate::error::{check_number, check_points, Error};
 use crate::frame::Frame;
 use crate::progress::{report, Progress};
@@ -151,7 +153,7 @@ pub fn train(
         trainer.step(if step < slow_from { rate } else { 0.1 * rate });
     };
     report(progress, 1.0)?;
-    Ok(Fit { network: trainer.network, losses, loss })
+    Ok(Fit { network: trainer.finish(), losses, loss })
 }
 
 /// Checks that there are 1 to 1,000 control points, finite and apart; gives their number.
@@ -194,15 +196,23 @@ struct Losses {
     worst: f64,
 }
 
-/// The network with what one step needs. Activations are stored neuron by neuron (neurons x control points), so that blocks of
-/// neurons are contiguous.
+/// The network with what one step needs. Activations and errors are stored neuron by neuron, neurons x control points.
 struct Trainer {
     network: Network,
-    adam: Adam,
-    /// The input of each layer, and after the last the gradient of the loss with respect to the logits.
-    inputs: [Vec<f32>; 3],
-    error: Vec<f32>,
+    hidden: Hidden,
+    /// Of the outer layers' weights and of all biases.
+    weights: [Adam; 2],
+    biases: [Adam; 3],
+    steps: i32,
     m: usize,
+    input: Vec<f32>,
+    /// After the first ReLU; also in the layout that the middle layer takes.
+    first: Vec<f32>,
+    first_lanes: Activations,
+    /// After the second ReLU.
+    second: Vec<f32>,
+    /// The gradient of the loss with respect to the logits.
+    error: Vec<f32>,
 }
 
 impl Trainer {
@@ -210,22 +220,44 @@ impl Trainer {
         let m = p.len() / network.dim();
         let features = network.features(p);
         let width = features.len() / m;
-        let input = (0..features.len()).map(|at| features[at % m * width + at / m]).collect();
-        let hidden = |layer: &Layer| vec![0.0; layer.outputs() * m];
-        let inputs = [input, hidden(&network.layers[0]), hidden(&network.layers[1])];
-        let error = hidden(&network.layers[2]);
-        Trainer { adam: Adam::new(&network.layers), network, inputs, error, m }
+        let [a, b, c] = network.layers();
+        let mut trainer = Trainer {
+            hidden: Hidden::new(b),
+            weights: [a, c].map(|layer| Adam::new(&layer.weight)),
+            biases: [a, b, c].map(|layer| Adam::new(&layer.bias)),
+            steps: 0,
+            m,
+            input: (0..features.len()).map(|at| features[at % m * width + at / m]).collect(),
+            first: vec![0.0; a.outputs() * m],
+            first_lanes: Activations::default(),
+            second: Vec::new(),
+            error: vec![0.0; c.outputs() * m],
+            network,
+        };
+        trainer.evaluate_first();
+        let product = trainer.hidden.forward(&trainer.first_lanes, m);
+        trainer.activate_second(product);
+        trainer
     }
 
-    /// Evaluates the control points, leaves the gradient of the loss with respect to the logits in `error`.
+    fn evaluate_first(&mut self) {
+        gemm::forward(&self.network.layers[0], &self.input, self.m, &mut self.first);
+        relu(&mut self.first);
+        self.first_lanes = Activations::of(&self.first, self.m);
+    }
+
+    /// Takes the middle layer's product with the first activations, without its biases.
+    fn activate_second(&mut self, mut product: Vec<f32>) {
+        for (row, bias) in product.chunks_exact_mut(self.m).zip(&self.network.layers[1].bias) {
+            row.iter_mut().for_each(|z| *z = (*z + bias).max(0.0));
+        }
+        self.second = product;
+    }
+
+    /// The losses of the network as it is; leaves the gradient with respect to the logits in `error`.
     fn forward(&mut self) -> Losses {
         let m = self.m;
-        let [input, first, second] = &mut self.inputs;
-        gemm::forward(&self.network.layers[0], input, m, first);
-        relu(first);
-        gemm::forward(&self.network.layers[1], first, m, second);
-        relu(second);
-        gemm::forward(&self.network.layers[2], second, m, &mut self.error);
+        gemm::forward(&self.network.layers[2], &self.second, m, &mut self.error);
         let (mut sum, mut worst) = (0.0, 0.0f64);
         let mut column = vec![0.0; m];
         for i in 0..m {
@@ -245,23 +277,35 @@ impl Trainer {
         Losses { mean: sum / m as f64, worst }
     }
 
-    /// One step of Adam after [`Trainer::forward`].
+    /// One step of Adam after [`Trainer::forward`], and the activations of the network that it gives.
     fn step(&mut self, rate: f64) {
-        self.adam.begin_step(rate);
-        let mut error = std::mem::take(&mut self.error);
-        for index in (0..3).rev() {
-            let layer = &mut self.network.layers[index];
-            let input = &self.inputs[index];
-            // Before the layer changes.
-            let passed_on = (index > 0).then(|| gemm::backward(layer, &error, input, self.m));
-            self.adam.update(index, layer, &error, input, self.m);
-            if let Some(passed_on) = passed_on {
-                let logits = std::mem::replace(&mut error, passed_on);
-                if index == 2 {
-                    self.error = logits;
-                }
+        let m = self.m;
+        self.steps += 1;
+        let rates = Rates::new(rate, self.steps);
+        let [a, b, c] = &mut self.network.layers;
+        // Errors go back through the layers as they were; then each is updated.
+        let second_error = gemm::backward(c, &self.error, &self.second, m);
+        let mut first_error = self.hidden.backward(&second_error, b.inputs(), m);
+        for (error, activation) in first_error.iter_mut().zip(&self.first) {
+            if *activation <= 0.0 {
+                *error = 0.0;
             }
         }
+        self.weights[1].update_weights(&mut c.weight, &self.error, &self.second, m, rates);
+        self.biases[2].update_biases(&mut c.bias, &self.error, m, rates);
+        self.biases[1].update_biases(&mut b.bias, &second_error, m, rates);
+        self.weights[0].update_weights(&mut a.weight, &first_error, &self.input, m, rates);
+        self.biases[0].update_biases(&mut a.bias, &first_error, m, rates);
+
+        let input = std::mem::take(&mut self.first_lanes);
+        self.evaluate_first();
+        let product = self.hidden.update_and_forward(&second_error, &input, &self.first_lanes, m, rates);
+        self.activate_second(product);
+    }
+
+    fn finish(mut self) -> Network {
+        self.hidden.store(&mut self.network.layers[1]);
+        self.network
     }
 }
 

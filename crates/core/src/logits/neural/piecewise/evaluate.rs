@@ -1,0 +1,223 @@
+//! The walk over the points' tree.
+
+use std::sync::Mutex;
+
+use super::columns::{sort, Sorted};
+use super::leaf::{self, Activations};
+use super::node::Part;
+use super::rows::Rows;
+use super::whole::{Whole, PACK};
+use crate::error::Error;
+use crate::logits::neural::{dense, network::Network};
+use crate::parallel::{for_each_block, for_each_task, threads, SharedRows};
+use crate::progress::Progress;
+use crate::simd::{Simd, WIDTH};
+use crate::tree::{Node, Order, PointTree, LEAF, LEAF_BLOCKS};
+
+/// Nodes of this depth are made from the whole network.
+const DEPTH: usize = 5;
+/// Bytes of one such node at most; where it might be more, its halves are made instead.
+const MOST_PART: usize = 8 << 20;
+/// Bytes of those that one task makes.
+const MOST_GROUP: usize = 8 << 20;
+/// Nodes that read rows of layer 2 one after the other, while they are in the cache.
+const GROUP: usize = 8;
+
+/// Writes the logits of the tree's points row by row, n x m, in their own order or in the tree's. The network has no Fourier
+/// features.
+pub(crate) fn write_logits(
+    simd: Simd,
+    network: &Network,
+    tree: &PointTree,
+    order: Order,
+    logits: &mut [f32],
+    progress: &mut Progress<'_>,
+) -> Result<(), Error> {
+    if tree.is_empty() {
+        return Ok(());
+    }
+    let walk = Walk {
+        simd,
+        network,
+        whole: Whole::new(network),
+        tree,
+        order,
+        logits: SharedRows::new(logits, network.outputs()),
+        workspaces: Mutex::default(),
+    };
+    walk.all(progress)
+}
+
+struct Walk<'a> {
+    simd: Simd,
+    network: &'a Network,
+    whole: Whole,
+    tree: &'a PointTree,
+    order: Order,
+    logits: SharedRows<'a>,
+    workspaces: Mutex<Vec<Workspace>>,
+}
+
+/// What one task works with.
+#[derive(Default)]
+struct Workspace {
+    /// Nodes that are made from the whole network, and rows of it.
+    tops: Vec<Level>,
+    rows: Rows,
+    /// One a level of the tree.
+    levels: Vec<Level>,
+    activations: Activations,
+}
+
+#[derive(Default)]
+struct Level {
+    part: Part,
+    sorted: Sorted,
+}
+
+impl Walk<'_> {
+    fn all(&self, progress: &mut Progress<'_>) -> Result<(), Error> {
+        let (mut tops, mut dense) = (Vec::new(), Vec::new());
+        self.find_tops(self.tree.root(), 0, &mut Level::default(), &mut tops, &mut dense);
+        let most = tops.len().div_ceil(2 * threads()).min(GROUP);
+        let mut groups = Vec::new();
+        let mut rest = &tops[..];
+        while !rest.is_empty() {
+            let mut bytes = 0;
+            let fits = rest[..most.min(rest.len())].iter().take_while(|(_, more)| {
+                bytes += more;
+                bytes <= MOST_GROUP
+            });
+            let (group, later) = rest.split_at(fits.count().max(1));
+            groups.push(group);
+            rest = later;
+        }
+        let tasks = groups.len() + dense.len();
+        for_each_task(tasks, 0.0..1.0, progress, |task, stop| match groups.get(task) {
+            Some(group) => self.group(group, stop),
+            None => self.dense(dense[task - groups.len()]),
+        })
+    }
+
+    /// The nodes to make from the whole network, with an estimate of their bytes; and the leaves over so large a box that a
+    /// dense pass is better.
+    fn find_tops(
+        &self,
+        node: Node,
+        depth: usize,
+        level: &mut Level,
+        tops: &mut Vec<(Node, usize)>,
+        dense: &mut Vec<Node>,
+    ) {
+        let halves = node.halves();
+        if let (Some(halves), true) = (halves, depth < DEPTH) {
+            return halves.into_iter().for_each(|half| self.find_tops(half, depth + 1, level, tops, dense));
+        }
+        let whole = &self.whole;
+        sort(
+            self.simd,
+            &whole.part.columns,
+            self.tree.region(node),
+            &mut level.part.columns,
+            &mut level.sorted,
+        );
+        let columns = level.part.columns.len;
+        // In the worst case all rows stay open.
+        let rows = whole.rows() + WIDTH * whole.heads.groups;
+        let bytes = columns * rows * size_of::<f32>();
+        match halves {
+            _ if bytes <= MOST_PART => tops.push((node, bytes)),
+            Some(halves) => {
+                halves.into_iter().for_each(|half| self.find_tops(half, depth + 1, level, tops, dense))
+            }
+            None => dense.push(node),
+        }
+    }
+
+    /// Makes nodes from the whole network, panel after panel of it, and evaluates them.
+    fn group(&self, nodes: &[(Node, usize)], stop: &(dyn Fn() -> bool + Sync)) {
+        let mut workspace = self.workspace();
+        let Workspace { tops, rows, .. } = &mut workspace;
+        tops.resize_with(nodes.len().max(tops.len()), Level::default);
+        let region = |at: usize| self.tree.region(nodes[at].0);
+        let panels = self.whole.rows().div_ceil(WIDTH);
+        for (at, Level { part, sorted }) in tops[..nodes.len()].iter_mut().enumerate() {
+            part.begin(self.simd, &self.whole.part, region(at), sorted, panels);
+        }
+        for first in (0..self.whole.rows()).step_by(PACK) {
+            if stop() {
+                return;
+            }
+            self.whole.pack(self.network, first, rows);
+            for (at, Level { part, sorted }) in tops[..nodes.len()].iter_mut().enumerate() {
+                part.absorb(self.simd, &self.whole.heads, rows, region(at), sorted);
+            }
+        }
+        for_each_block(&mut tops[..nodes.len()], 1, |at, top| {
+            let mut workspace = self.workspace();
+            let Workspace { levels, activations, .. } = &mut workspace;
+            levels.resize_with(usize::BITS as usize, Level::default);
+            self.descend(nodes[at].0, &top[0].part, levels, activations, stop);
+            self.keep(workspace);
+        });
+        self.keep(workspace);
+    }
+
+    fn workspace(&self) -> Workspace {
+        self.workspaces.lock().expect("no task panics").pop().unwrap_or_default()
+    }
+
+    fn keep(&self, workspace: Workspace) {
+        self.workspaces.lock().expect("no task panics").push(workspace);
+    }
+
+    fn descend(
+        &self,
+        node: Node,
+        part: &Part,
+        levels: &mut [Level],
+        activations: &mut Activations,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) {
+        let Some(halves) = node.halves() else {
+            return self.leaf(node, part, activations);
+        };
+        if stop() {
+            return;
+        }
+        let (Level { part: child, sorted }, levels) =
+            levels.split_first_mut().expect("a tree has fewer levels than a number has bits");
+        for half in halves {
+            let region = self.tree.region(half);
+            child.begin(self.simd, part, region, sorted, part.rows.panels());
+            child.absorb(self.simd, &self.whole.heads, &part.rows, region, sorted);
+            self.descend(half, child, levels, activations, stop);
+        }
+    }
+
+    fn leaf(&self, node: Node, part: &Part, activations: &mut Activations) {
+        let first = node.first * LEAF;
+        let rows = self.order.rows(self.tree, first..(first + LEAF).min(self.tree.len()));
+        // They may be anywhere in memory: they are on their way while the first points are evaluated.
+        rows.clone().for_each(|row| self.logits.prefetch(row));
+        let blocks = &self.tree.blocks()[node.first * LEAF_BLOCKS..];
+        let mut rows = rows;
+        for x in blocks.iter().take(LEAF_BLOCKS) {
+            leaf::evaluate(self.simd, part, &self.whole.heads, x, activations);
+            for (lane, row) in rows.by_ref().take(WIDTH).enumerate() {
+                // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
+                let row = unsafe { self.logits.row(row) };
+                for (logit, output) in row.iter_mut().zip(&activations.outputs) {
+                    *logit = output.0[lane];
+                }
+            }
+        }
+    }
+
+    fn dense(&self, node: Node) {
+        let first = node.first * LEAF;
+        let places = first..(first + LEAF).min(self.tree.len());
+        // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
+        unsafe { dense::evaluate_places(self.network, self.tree, self.order, places, &self.logits) }
+    }
+}

@@ -1,0 +1,304 @@
+//! Sixteen numbers in registers: one of 512 bits, two of 256, or whatever the compiler makes of an array.
+
+/// Numbers side by side.
+pub(crate) const WIDTH: usize = 16;
+
+/// Sixteen numbers in memory, at an address that a register loads from at once.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Aligned(pub [f32; WIDTH]);
+
+impl Aligned {
+    pub(crate) const ZERO: Aligned = Aligned([0.0; WIDTH]);
+}
+
+/// Sixteen single-precision numbers, and what kernels do with them.
+pub(crate) trait Lanes: Copy {
+    /// Values that fit into registers.
+    const REGISTERS: usize;
+    /// Which lanes.
+    type Mask: Copy;
+    /// Sixteen numbers of lanes.
+    type Places: Copy;
+
+    fn splat(value: f32) -> Self;
+    fn load(from: &[f32; WIDTH]) -> Self;
+    fn store(self) -> [f32; WIDTH];
+    fn add(self, other: Self) -> Self;
+    fn sub(self, other: Self) -> Self;
+    fn mul(self, other: Self) -> Self;
+    fn div(self, other: Self) -> Self;
+    /// `self * b + c`, rounded once where the instruction set can.
+    fn mul_add(self, b: Self, c: Self) -> Self;
+    fn max(self, other: Self) -> Self;
+    fn sqrt(self) -> Self;
+    fn abs(self) -> Self;
+    /// `places`, each below 16, as [`permute`](Lanes::permute) wants them.
+    fn places(places: &[u32; WIDTH]) -> Self::Places;
+    /// In each lane what is in the lane that `places` has there.
+    fn permute(self, places: Self::Places) -> Self;
+    /// The lanes where `self < other`.
+    fn less(self, other: Self) -> Self::Mask;
+    /// `yes` in the lanes of the mask, `no` in the others.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// The sum of the lanes, pairwise: the same order on every instruction set.
+    #[inline(always)]
+    fn total(self) -> f32 {
+        let mut sums = self.store();
+        for half in [8, 4, 2, 1] {
+            for l in 0..half {
+                sums[l] += sums[l + half];
+            }
+        }
+        sums[0]
+    }
+}
+
+/// An array, for every machine.
+#[derive(Clone, Copy)]
+pub(crate) struct Portable([f32; WIDTH]);
+
+impl Portable {
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
+        Portable(std::array::from_fn(|l| f(self.0[l], other.0[l])))
+    }
+}
+
+impl Lanes for Portable {
+    const REGISTERS: usize = 4;
+    type Mask = [bool; WIDTH];
+    type Places = [u32; WIDTH];
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Portable([value; WIDTH])
+    }
+    #[inline(always)]
+    fn load(from: &[f32; WIDTH]) -> Self {
+        Portable(*from)
+    }
+    #[inline(always)]
+    fn store(self) -> [f32; WIDTH] {
+        self.0
+    }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self.zip(other, |a, b| a / b)
+    }
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self.mul(b).add(c)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Portable(self.0.map(f32::sqrt))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Portable(self.0.map(f32::abs))
+    }
+    #[inline(always)]
+    fn places(places: &[u32; WIDTH]) -> Self::Places {
+        *places
+    }
+    #[inline(always)]
+    fn permute(self, places: Self::Places) -> Self {
+        Portable(places.map(|place| self.0[place as usize % WIDTH]))
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> Self::Mask {
+        std::array::from_fn(|l| self.0[l] < other.0[l])
+    }
+    #[inline(always)]
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+        Portable(std::array::from_fn(|l| if mask[l] { yes.0[l] } else { no.0[l] }))
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(crate) use x86::{Avx2, Avx512};
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use super::{Lanes, WIDTH};
+    use std::arch::x86_64::*;
+
+    /// Two registers of 256 bits.
+    #[derive(Clone, Copy)]
+    pub(crate) struct Avx2(__m256, __m256);
+
+    /// One register of 512 bits.
+    #[derive(Clone, Copy)]
+    pub(crate) struct Avx512(__m512);
+
+    /// A method that is an intrinsic on each register.
+    macro_rules! intrinsics {
+        (Avx2: $($method:ident($($arg:ident),*) = $intrinsic:ident;)*) => { $(
+            #[inline(always)]
+            fn $method(self, $($arg: Self),*) -> Self {
+                // SAFETY: values of this type exist only in kernels compiled for it, where it was detected.
+                unsafe { Avx2($intrinsic(self.0, $($arg.0),*), $intrinsic(self.1, $($arg.1),*)) }
+            }
+        )* };
+        (Avx512: $($method:ident($($arg:ident),*) = $intrinsic:ident;)*) => { $(
+            #[inline(always)]
+            fn $method(self, $($arg: Self),*) -> Self {
+                // SAFETY: values of this type exist only in kernels compiled for it, where it was detected.
+                unsafe { Avx512($intrinsic(self.0, $($arg.0),*)) }
+            }
+        )* };
+    }
+
+    impl Lanes for Avx2 {
+        const REGISTERS: usize = 8;
+        type Mask = (__m256, __m256);
+        type Places = (__m256i, __m256i);
+
+        intrinsics! { Avx2:
+            add(other) = _mm256_add_ps;
+            sub(other) = _mm256_sub_ps;
+            mul(other) = _mm256_mul_ps;
+            div(other) = _mm256_div_ps;
+            mul_add(b, c) = _mm256_fmadd_ps;
+            max(other) = _mm256_max_ps;
+            sqrt() = _mm256_sqrt_ps;
+        }
+        #[inline(always)]
+        fn splat(value: f32) -> Self {
+            // SAFETY: called in kernels compiled for it, where it was detected; so for all below.
+            unsafe { Avx2(_mm256_set1_ps(value), _mm256_set1_ps(value)) }
+        }
+        #[inline(always)]
+        fn load(from: &[f32; WIDTH]) -> Self {
+            // SAFETY: as above; 16 numbers are there to be read.
+            unsafe { Avx2(_mm256_loadu_ps(from.as_ptr()), _mm256_loadu_ps(from.as_ptr().add(8))) }
+        }
+        #[inline(always)]
+        fn store(self) -> [f32; WIDTH] {
+            let mut to = [0.0; WIDTH];
+            // SAFETY: as above; 16 numbers may be written.
+            unsafe {
+                _mm256_storeu_ps(to.as_mut_ptr(), self.0);
+                _mm256_storeu_ps(to.as_mut_ptr().add(8), self.1);
+            }
+            to
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            // SAFETY: as above.
+            unsafe {
+                let sign = _mm256_set1_ps(-0.0);
+                Avx2(_mm256_andnot_ps(sign, self.0), _mm256_andnot_ps(sign, self.1))
+            }
+        }
+        #[inline(always)]
+        fn places(places: &[u32; WIDTH]) -> Self::Places {
+            // SAFETY: as above; 16 numbers are there to be read.
+            unsafe {
+                let from: *const __m256i = places.as_ptr().cast();
+                (_mm256_loadu_si256(from), _mm256_loadu_si256(from.add(1)))
+            }
+        }
+        #[inline(always)]
+        fn permute(self, places: Self::Places) -> Self {
+            // SAFETY: as above.
+            unsafe {
+                // Bit 3 of a place, which says from which register, becomes the sign that the blend looks at.
+                let half = |places| {
+                    let (low, high) =
+                        (_mm256_permutevar8x32_ps(self.0, places), _mm256_permutevar8x32_ps(self.1, places));
+                    _mm256_blendv_ps(low, high, _mm256_castsi256_ps(_mm256_slli_epi32::<28>(places)))
+                };
+                Avx2(half(places.0), half(places.1))
+            }
+        }
+        #[inline(always)]
+        fn less(self, other: Self) -> Self::Mask {
+            // SAFETY: as above.
+            unsafe {
+                (_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0), _mm256_cmp_ps::<_CMP_LT_OQ>(self.1, other.1))
+            }
+        }
+        #[inline(always)]
+        fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+            // SAFETY: as above.
+            unsafe { Avx2(_mm256_blendv_ps(no.0, yes.0, mask.0), _mm256_blendv_ps(no.1, yes.1, mask.1)) }
+        }
+    }
+
+    impl Lanes for Avx512 {
+        const REGISTERS: usize = 32;
+        type Mask = __mmask16;
+        type Places = __m512i;
+
+        intrinsics! { Avx512:
+            add(other) = _mm512_add_ps;
+            sub(other) = _mm512_sub_ps;
+            mul(other) = _mm512_mul_ps;
+            div(other) = _mm512_div_ps;
+            mul_add(b, c) = _mm512_fmadd_ps;
+            max(other) = _mm512_max_ps;
+            sqrt() = _mm512_sqrt_ps;
+        }
+        #[inline(always)]
+        fn splat(value: f32) -> Self {
+            // SAFETY: called in kernels compiled for it, where it was detected; so for all below.
+            unsafe { Avx512(_mm512_set1_ps(value)) }
+        }
+        #[inline(always)]
+        fn load(from: &[f32; WIDTH]) -> Self {
+            // SAFETY: as above; 16 numbers are there to be read.
+            unsafe { Avx512(_mm512_loadu_ps(from.as_ptr())) }
+        }
+        #[inline(always)]
+        fn store(self) -> [f32; WIDTH] {
+            let mut to = [0.0; WIDTH];
+            // SAFETY: as above; 16 numbers may be written.
+            unsafe { _mm512_storeu_ps(to.as_mut_ptr(), self.0) };
+            to
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            // SAFETY: as above.
+            unsafe { Avx512(_mm512_abs_ps(self.0)) }
+        }
+        #[inline(always)]
+        fn places(places: &[u32; WIDTH]) -> Self::Places {
+            // SAFETY: as above; 16 numbers are there to be read.
+            unsafe { _mm512_loadu_si512(places.as_ptr().cast()) }
+        }
+        #[inline(always)]
+        fn permute(self, places: Self::Places) -> Self {
+            // SAFETY: as above.
+            unsafe { Avx512(_mm512_permutexvar_ps(places, self.0)) }
+        }
+        #[inline(always)]
+        fn less(self, other: Self) -> Self::Mask {
+            // SAFETY: as above.
+            unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+            // SAFETY: as above.
+            unsafe { Avx512(_mm512_mask_blend_ps(mask, no.0, yes.0)) }
+        }
+    }
+}
