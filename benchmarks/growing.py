@@ -31,7 +31,7 @@ def line(n: int, m: int) -> dict[str, float | int]:
     shape = inputs.chair()
     x = inputs.surface(n)
     weights = inputs.weights(m)
-    tree = nm.PointTree(x)
+    tree = inputs.tree(x)
     logits = weights.logits(tree)
     at = inputs.subset(500, n)
     error = float(np.abs(logits[at] - answers.logits(inputs.network(m), x[at])).max())
@@ -44,7 +44,7 @@ def line(n: int, m: int) -> dict[str, float | int]:
         "training, 48 steps": timed(
             lambda: nm.NeuralWeights.fit(weights.control_points, bounds=shape.bounds, steps=48)
         ),
-        "tree": timed(lambda: nm.PointTree(x)),
+        "tree": timed(lambda: inputs.tree(x)),
         "logits": timed(lambda: weights.logits(tree)),
         "rigid frame": timed(lambda: deformer.deform(q, 1.0, out=out)),
         "error": error,

@@ -77,6 +77,11 @@ def surface(count: int) -> Array:
     return points
 
 
+def tree(x: Array) -> nm.PointTree:
+    """The tree of points on the chair, measured by its box."""
+    return nm.PointTree(x, bounds=chair().bounds)
+
+
 def subset(count: int, of: int) -> NDArray[np.intp]:
     """Which points are checked."""
     return np.random.default_rng(SEED + 1).permutation(of)[:count]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-import neuralmls as nm
 from benchmarks import answers, crossing, inputs
 from benchmarks.measure import Contender, interleaved, once
 from benchmarks.rivals import dense_numpy
@@ -46,7 +45,7 @@ def contenders_for(n: int, setting: Setting, checked: list[str]) -> list[Contend
     """Ourselves first; every answer held against float64."""
     x, network = inputs.surface(n), inputs.network()
     weights, dense = inputs.weights(), inputs.dense()
-    tree = nm.PointTree(x)
+    tree = inputs.tree(x)
     scaled = ((x - network.centre) / network.half).astype(np.float32)
     at = inputs.subset(SAMPLE, n)
     truth = answers.logits(network, x[at])

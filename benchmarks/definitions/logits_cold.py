@@ -27,8 +27,8 @@ def run(setting: Setting) -> Outcome:
 
     contenders = [
         Contender("ours", lambda weights: nm.Deformer(x, weights).deform(shape.q), inputs.fresh),
-        Contender("tree", lambda _: nm.PointTree(x)),
-        Contender("logits", lambda weights: weights.logits(nm.PointTree(x)), inputs.fresh),
+        Contender("tree", lambda _: inputs.tree(x)),
+        Contender("logits", lambda weights: weights.logits(inputs.tree(x)), inputs.fresh),
     ]
     rival = None
     if setting.has("torch"):

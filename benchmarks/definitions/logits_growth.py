@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-import neuralmls as nm
 from benchmarks import inputs
 from benchmarks.measure import Contender, interleaved
 from benchmarks.row import Outcome, Row, check
@@ -18,7 +17,7 @@ def run(setting: Setting) -> Outcome:
     many, few = setting.size(1_000_000), setting.size(100_000)
     x = inputs.surface(many)
     weights = inputs.weights()
-    trees = {n: nm.PointTree(x[:n]) for n in (few, many)}
+    trees = {n: inputs.tree(x[:n]) for n in (few, many)}
     apart = np.abs(weights.logits(trees[many])[:few] - weights.logits(trees[few])).max()
     checked = [check("the same points among others have the same logits", float(apart), 2e-4)]
     seconds = interleaved(
