@@ -18,6 +18,8 @@ from benchmarks.rivals import installed
 from benchmarks.row import WrongAnswer
 from benchmarks.setting import Setting
 
+BUSY = 0.5  # processes that want to run, in the last minute
+
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the definitions, print the table, write the record; 1 if an answer was wrong, whatever the times."""
@@ -36,6 +38,8 @@ def main(arguments: list[str] | None = None) -> int:
     console = Console(width=None if sys.stdout.isatty() else 170, highlight=False)
     told = machine.describe()
     console.print(", ".join(f"{key} {value}" for key, value in told.items()))
+    if float(told.get("load before", 0)) > BUSY:
+        console.print("[yellow]the machine has other work: these times are not its best[/]")
     for rival in ("torch", "molesq"):
         if not installed(rival):
             console.print(f"{rival}: not installed, so that its bars are not held; pip install '.[bench]'")

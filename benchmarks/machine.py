@@ -65,6 +65,8 @@ def describe() -> dict[str, str | int]:
         "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
     }
+    if hasattr(os, "getloadavg"):
+        facts["load before"] = f"{os.getloadavg()[0]:.2f}"
     for name in ("neuralmls", "numpy", "torch", "molesq"):
         try:
             facts[name] = version(name)
