@@ -165,8 +165,10 @@ def test_other_threads_run_during_a_long_call():
             {"weights": nm.InverseDistanceWeights([[9.0, 0.0, 0.0]])},
             "weights: expected a weight function of the control",
         ),
-        ({"weights": "magic"}, "weights: expected 'neural' or 'inverse-distance', found 'magic'"),
+        ({"weights": "magic"}, "weights: expected 'neural', 'inverse-distance' or a weight function, found 'magic'"),
+        ({"weights": None}, "weights: expected 'neural', 'inverse-distance' or a weight function, found None"),
         ({"transform": "bend"}, "transform: expected 'rigid', 'similarity' or 'affine', found 'bend'"),
+        ({"transform": None}, "transform: expected 'rigid', 'similarity' or 'affine', found None"),
         ({"seed": -1}, "seed: expected a whole number from 0"),
         ({"seed": 0.5}, "seed: expected a whole number, found 0.5"),
     ],
@@ -176,3 +178,9 @@ def test_wrong_arguments_are_refused_in_a_sentence(change, sentence):
     x, p, q = (arguments.pop(name) for name in "xpq")
     with pytest.raises(nm.ArgumentError, match=sentence):
         nm.deform(x, p, q, **arguments)
+
+
+@pytest.mark.parametrize("weights", [None, "neural", np.eye(3)])
+def test_what_is_no_weight_function_is_refused_in_a_sentence(weights):
+    with pytest.raises(nm.ArgumentError, match=r"^weights: expected a weight function"):
+        nm.Deformer([[0.0]], weights)

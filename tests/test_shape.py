@@ -59,10 +59,27 @@ def test_materials_and_textures_go_along_into_another_folder(tmp_path):
     written = shape.write(there / "b.obj", shape.positions + 1)
     assert [str(path.relative_to(there)) for path in written] == ["b.obj", "red paint.mtl", "images/red wood.png"]
     assert (there / "images" / "red wood.png").read_bytes() == b"wood"
-    (there / "red paint.mtl").write_text("mine")
-    shape.write(there / "b.obj", shape.positions + 2)
-    assert (there / "red paint.mtl").read_text() == "mine"
+    assert [path.name for path in shape.write(there / "c.obj", shape.positions)] == ["c.obj"]
     assert [path.name for path in shape.write(here / "b.obj", shape.positions)] == ["b.obj"]
+
+
+def test_a_companion_with_another_content_is_kept_and_named(tmp_path):
+    here, there = tmp_path / "here", tmp_path / "there"
+    here.mkdir()
+    there.mkdir()
+    (here / "a.obj").write_text(TRIANGLE)
+    (here / "red paint.mtl").write_text("newmtl red\nmap_Kd wood.png\n")
+    (here / "wood.png").write_bytes(b"wood")
+    (there / "red paint.mtl").write_text("mine")
+    shape = nm.read(here / "a.obj")
+    with pytest.warns(UserWarning, match="kept") as warned:
+        written = shape.write(there / "b.obj", shape.positions + 1)
+    assert [str(warning.message) for warning in warned] == [
+        f"{there / 'red paint.mtl'}: kept, although it is not the '{here / 'red paint.mtl'}' that the shape names"
+    ]
+    assert warned[0].filename == __file__
+    assert [path.name for path in written] == ["b.obj", "wood.png"]
+    assert (there / "red paint.mtl").read_text() == "mine"
 
 
 def test_buffers_that_change_are_called_after_the_new_file(tmp_path):
@@ -128,6 +145,15 @@ def test_positions_and_maps_must_fit(tmp_path):
     with pytest.raises(nm.FileError, match=r"b\.ply: expected the ending \.obj"):
         shape.write(tmp_path / "b.ply", shape.positions)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.obj"]
+
+
+def test_what_is_no_path_is_refused(tmp_path):
+    (tmp_path / "a.obj").write_text(TRIANGLE)
+    shape = nm.read(tmp_path / "a.obj")
+    points = nm.ControlPoints([[0, 0, 0]])
+    for call in (nm.read, nm.ControlPoints.read, points.write, lambda path: shape.write(path, shape.positions)):
+        with pytest.raises(nm.ArgumentError, match="path: expected the path of a file, found None"):
+            call(None)
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")

@@ -31,6 +31,23 @@ def test_with_bounds_epsilon_means_the_same_at_any_size():
     assert np.allclose(nm.softmax(small.logits(X)), nm.softmax(large.logits(1000 * X)), atol=1e-6)
 
 
+@pytest.mark.parametrize("size", [1e-200, 1e200])
+def test_classic_weights_without_bounds_are_the_same_at_any_size(size):
+    expected = nm.softmax(nm.InverseDistanceWeights(P).logits(X))
+    found = nm.softmax(nm.InverseDistanceWeights(size * P).logits(size * X))
+    assert np.abs(found - expected).max() < 1e-6
+
+
+def test_without_bounds_epsilon_is_in_the_units_of_the_coordinates():
+    assert nm.InverseDistanceWeights([[0.0], [8.0]], epsilon=1.0).logits([[2.0]])[0, 0] == pytest.approx(-np.log(5))
+
+
+@pytest.mark.parametrize("logits", [[], 1.0, None, np.empty((3, 0)), [[1.0], [1.0, 2.0]], "logits"])
+def test_softmax_refuses_what_has_no_rows_of_numbers(logits):
+    with pytest.raises(nm.ArgumentError, match=r"^logits: expected an \(n, m\) array"):
+        nm.softmax(logits)
+
+
 def test_softmax_takes_infinite_logits_and_small_temperatures():
     w = nm.softmax([[0.0, np.inf, 3.0], [0.0, -1.0, -2.0]], 1e-3)
     assert w.tolist() == [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
@@ -74,7 +91,7 @@ def test_other_files_are_refused_in_a_sentence(neural, tmp_path):
     [
         (lambda: nm.InverseDistanceWeights(P, alpha=0), "alpha: expected a number above 0"),
         (lambda: nm.InverseDistanceWeights(P, epsilon=-1), "epsilon: expected a number of at least 0"),
-        (lambda: nm.InverseDistanceWeights(np.empty((0, 3))), "control points: expected at least one"),
+        (lambda: nm.InverseDistanceWeights(np.empty((0, 3))), "control_points: expected at least one"),
         (lambda: nm.NeuralWeights.fit(P, width=0), "width: expected a whole number from 1 to 16384, found 0"),
         (lambda: nm.NeuralWeights.fit(P, steps=0), "steps: expected a whole number from 1"),
         (lambda: nm.NeuralWeights.fit(P, rate=np.inf), "rate: expected a number above 0"),

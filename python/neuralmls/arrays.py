@@ -75,6 +75,21 @@ def as_count(name: str, value: int, low: int, high: int) -> int:
     return count
 
 
+def box_around(points: NDArray[np.float64]) -> tuple[list[float], float]:
+    """Return centre and half of the longest side of the box of points (n, d); a half of 1 where all are in one place.
+
+    Raises
+    ------
+    ArgumentError
+        There are no points.
+    """
+    if len(points) == 0:
+        raise ArgumentError("control_points: expected at least one, found none")
+    if (points == points[0]).all():
+        return points[0].tolist(), 1.0
+    return as_box(np.stack([points.min(axis=0), points.max(axis=0)]), points.shape[1])
+
+
 def as_box(bounds: ArrayLike, dimension: int) -> tuple[list[float], float]:
     """Return centre and half of the longest side of a box (2, d): least and greatest corner.
 

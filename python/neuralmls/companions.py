@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from pathlib import Path, PurePosixPath
 
 from neuralmls.errors import FileError
@@ -32,7 +33,8 @@ def read_beside(folder: Path, name: str) -> bytes:
 def copy_along(names: list[str], source: Path, target: Path) -> list[Path]:
     """Copy the files of folder `source` that are named, and images that they name, into folder `target`.
 
-    What is there already stays as it is; what is missing at the source, or leaves its folder, is passed over.
+    What is there already stays as it is, with a warning for each file that has another content; what is missing at
+    the source, or leaves its folder, is passed over.
 
     Raises
     ------
@@ -41,10 +43,14 @@ def copy_along(names: list[str], source: Path, target: Path) -> list[Path]:
     """
     if source.resolve() == target.resolve():
         return []
-    copied = []
+    copied, kept = [], []
     for name in dict.fromkeys([*names, *_images(names, source)]):
         here, there = _inside(source, name), _inside(target, name)
-        if here is None or there is None or not here.is_file() or os.path.lexists(there):
+        if here is None or there is None or not here.is_file():
+            continue
+        if os.path.lexists(there):
+            if not _same_content(here, there):
+                kept.append((here, there))
             continue
         try:
             there.parent.mkdir(parents=True, exist_ok=True)
@@ -53,7 +59,16 @@ def copy_along(names: list[str], source: Path, target: Path) -> list[Path]:
             raise FileError(f"{there}: cannot copy '{here}' along: {error.strerror or error}") from error
         write_atomically(there, data)
         copied.append(there)
+    for here, there in kept:  # at the end: where warnings are errors, all else is copied first
+        warnings.warn(f"{there}: kept, although it is not the '{here}' that the shape names", stacklevel=3)
     return copied
+
+
+def _same_content(one: Path, other: Path) -> bool:
+    try:
+        return one.samefile(other) or one.read_bytes() == other.read_bytes()
+    except OSError:  # a folder, a link to nothing
+        return False
 
 
 def _images(names: list[str], folder: Path) -> list[str]:

@@ -6,12 +6,12 @@ import difflib
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from neuralmls.errors import ArgumentError, ControlPointError, FileError
+from neuralmls.files import as_path
 
 # How far outside of the shape's box (in longest sides of it) a control point is no longer taken for intended.
 FAR_SOURCE = 1.0
@@ -165,7 +165,7 @@ class ControlPoints:
 
 
 def _ending(path: str | os.PathLike[str]) -> str:
-    ending = Path(path).suffix.lower()
+    ending = as_path("path", path).suffix.lower()
     if ending not in (".json", ".csv"):
         raise FileError(f"{path}: expected a control-point file that ends in .json or .csv")
     return ending

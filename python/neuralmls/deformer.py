@@ -37,7 +37,8 @@ class Deformer:
     Raises
     ------
     ArgumentError
-        `x` does not hold finite points of the control points' dimension, or there is no such transform.
+        `x` does not hold finite points of the control points' dimension, or there is no such transform or weight
+        function.
 
     Source
     ------
@@ -63,6 +64,12 @@ class Deformer:
         given = getattr(x, "dtype", np.dtype(np.float64))
         single = given.kind == "f" and given.itemsize == 4  # whatever its byte order
         self._dtype = np.dtype(np.float32 if single else np.float64)
+        if not hasattr(weights, "control_points"):
+            raise ArgumentError(
+                f"weights: expected a weight function, with control_points and logits, found {weights!r}"
+            )
+        if not isinstance(transform, str):
+            raise ArgumentError(f"transform: expected 'rigid', 'similarity' or 'affine', found {transform!r}")
         p = as_points("control_points", weights.control_points)
         points = as_points("x", x, p.shape[1])
         logits = np.ascontiguousarray(

@@ -7,7 +7,21 @@ import secrets
 import stat
 from pathlib import Path
 
-from neuralmls.errors import FileError
+from neuralmls.errors import ArgumentError, FileError
+
+
+def as_path(name: str, path: str | os.PathLike[str]) -> Path:
+    """Return an argument that should be a path as one.
+
+    Raises
+    ------
+    ArgumentError
+        It is none.
+    """
+    try:
+        return Path(path)
+    except TypeError:
+        raise ArgumentError(f"{name}: expected the path of a file, found {path!r}") from None
 
 
 def write_atomically(path: str | os.PathLike[str], data: bytes) -> None:

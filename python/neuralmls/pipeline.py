@@ -62,16 +62,17 @@ def deform(
             f"q: expected one target for each of at least one control point, found {len(targets)} for {len(sources)}"
         )
     points = as_points("x", x, sources.shape[1])
-    if not isinstance(weights, str):
-        function: Weights = weights
+    function: Weights
+    if isinstance(weights, str) and weights == "neural":
+        function = NeuralWeights.fit(sources, bounds=_bounds(points), seed=seed)
+    elif isinstance(weights, str) and weights == "inverse-distance":
+        function = InverseDistanceWeights(sources, bounds=_bounds(points))
+    elif isinstance(weights, str) or not hasattr(weights, "control_points"):
+        raise ArgumentError(f"weights: expected 'neural', 'inverse-distance' or a weight function, found {weights!r}")
+    else:
+        function = weights
         if not np.array_equal(as_points("weights.control_points", function.control_points), sources):
             raise ArgumentError("weights: expected a weight function of the control points p, found one of others")
-    elif weights == "neural":
-        function = NeuralWeights.fit(sources, bounds=_bounds(points), seed=seed)
-    elif weights == "inverse-distance":
-        function = InverseDistanceWeights(sources, bounds=_bounds(points))
-    else:
-        raise ArgumentError(f"weights: expected 'neural' or 'inverse-distance', found '{weights}'")
     return Deformer(x, function, transform=transform).deform(targets, temperature)
 
 

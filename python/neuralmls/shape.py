@@ -12,7 +12,7 @@ from neuralmls import _core
 from neuralmls.arrays import as_points
 from neuralmls.companions import copy_along, read_beside
 from neuralmls.errors import ArgumentError, FileError
-from neuralmls.files import write_atomically
+from neuralmls.files import as_path, write_atomically
 
 
 class Shape:
@@ -98,7 +98,8 @@ class Shape:
         """Write the file with other positions; everything else is as it was. Unmoved, the file's very bytes.
 
         Side files whose content changes are called after it (`bent.gltf`: `bent.bin`). Files that the shape names
-        (materials, textures) are copied along into another folder, where they are not there yet.
+        (materials, textures) are copied along into another folder, where they are not there yet; one that is there with
+        another content is kept, and a warning names it.
 
         Parameters
         ----------
@@ -121,7 +122,7 @@ class Shape:
         FileError
             The ending is of another format, or a file cannot be written; what was there is then untouched.
         """
-        target = Path(path)
+        target = as_path("path", path)
         if target.suffix[1:].lower() not in self.extensions:
             endings = ", ".join(f".{ending}" for ending in self.extensions)
             raise FileError(f"{target}: expected the ending {endings}, a file of the format {self.format} stays one")
@@ -144,8 +145,10 @@ def read(path: str | os.PathLike[str]) -> Shape:
     ------
     FileError
         The file is missing, broken or of a kind that is not read; the message names the line or byte.
+    ArgumentError
+        `path` is none.
     """
-    source = Path(path)
+    source = as_path("path", path)
     try:
         data = source.read_bytes()
     except OSError as error:

@@ -53,7 +53,7 @@ def test_folder_as_shape(refused, here):
         ("broken.json", '{"format": ', ("line 1", "JSON")),
         ("twice.csv", HEADER + "a,0,0,0\nb,1,0,0\nc,0,0,0\n", ("'a' and 'c'", "same place")),
         ("infinite.csv", HEADER + "a,0,0,0\nb,inf,0,0\n", ("'b'", "not finite")),
-        ("flat.csv", "name,x,y\na,0,0\nb,1,0\n", ("2 coordinates", "3")),
+        ("flat.csv", "name,x,y\na,0,0\nb,1,0\n", ("flat.csv, for shape.obj", "2 coordinates", "3")),
         ("names.csv", HEADER + "a,0,0,0\na,1,0,0\n", ("'a'", "more than one")),
         ("target.csv", "name,x,y,z,target_x\na,0,0,0,1\n", ("line 1", "target_y")),
         ("half.csv", "name,x,y,z,target_x,target_y,target_z\na,0,0,0,1,,2\n", ("line 2", "target_y", "'a'")),
@@ -116,8 +116,14 @@ CLASSIC = ("--weights", "inverse-distance")
     ],
 )
 def test_wrong_options(refused, options, words):
-    given = () if "--move" in options else ("--move", "top=0,1,0")
-    refused(2, "deform", "shape.obj", "--points", "points.csv", "-o", "out.obj", *given, *options, words=words)
+    # Nothing is moved, of which a warning would be said if the options were looked at any later.
+    refused(2, "deform", "shape.obj", "--points", "points.csv", "-o", "out.obj", *options, words=words)
+
+
+def test_wrong_options_are_refused_before_anything_is_read(refused):
+    arguments = ("none.obj", "--points", "points.csv", "--steps", "0")
+    refused(2, "deform", *arguments, "-o", "out.obj", words=("steps",))
+    refused(2, "render", *arguments, "-o", "out.png", words=("steps",))
 
 
 @pytest.mark.parametrize(

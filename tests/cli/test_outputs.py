@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import sys
@@ -34,8 +35,24 @@ def test_output_equal_to_input_is_refused_without_force(refused, run, here):
 
 
 def test_output_of_another_format_is_refused(refused):
-    refused(2, *DEFORM, "-o", "out.ply", words=("out.ply", ".obj", "OBJ"))
+    refused(2, *DEFORM, "-o", "out.ply", words=("out.ply: expected a name that ends in .obj, for a bent OBJ file (",))
     refused(2, *DEFORM, "-o", "out", words=(".obj",))
+
+
+def test_companions_go_along_and_those_of_other_content_are_kept_and_named(run, here):
+    (here / "there").mkdir()
+    (here / "shape.mtl").write_text("newmtl oak\n")
+    into = (*DEFORM[:-1], "--json", "--force", "-o", "there/out.obj")
+    told = json.loads(run(*into).out)
+    assert (told["files"], told["warnings"]) == (["there/out.obj", "there/shape.mtl"], [])
+    assert json.loads(run(*into).out)["warnings"] == []
+    (here / "there" / "shape.mtl").write_text("newmtl steel\n")
+    ran = run(*into)
+    sentence = "there/shape.mtl: kept, although it is not the 'shape.mtl' that the shape names"
+    assert (ran.code, ran.err) == (0, f"neuralmls: warning: {sentence}\n")
+    assert json.loads(ran.out)["warnings"] == [sentence]
+    assert json.loads(ran.out)["files"] == ["there/out.obj"]
+    assert (here / "there" / "shape.mtl").read_text() == "newmtl steel\n"
 
 
 def test_missing_folder(refused):

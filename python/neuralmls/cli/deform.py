@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings as python_warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
@@ -71,15 +72,19 @@ def deform(
     from neuralmls.shape import read
 
     as_number("temperature", temperature, 0)
+    choice.check()
     stages = Stages(quiet=quiet)
     with stages.stage("read"):
         source = read(shape)
         if not to_stdout:
-            outputs.check_ending(output, source.extensions, f"{source.format} is not converted")
+            outputs.check_ending(output, source.extensions, f"a bent {source.format} file (formats are not converted)")
         deformation.check_size(source)
         control_points = ControlPoints.read(points).moved(offsets)
-    warnings = control_points.check(source.bounds)
-    if (control_points.sources == control_points.targets).all():
+    warnings = deformation.check_points(control_points, points, source)
+    moved = bool((control_points.sources != control_points.targets).any())
+    if moved and not to_stdout:
+        _check_side_files(source, output, force=force)
+    if not moved:
         warnings.append("no control point is moved, so that the output is the input")
     for sentence in warnings:
         console.warning(sentence)
@@ -88,7 +93,10 @@ def deform(
         console.warning(sentence)
         warnings.append(sentence)
     with stages.stage("write"):
-        files = _write(source, result, output, force=force)
+        files, kept = _write(source, result, output, force=force)
+    for sentence in kept:
+        console.warning(sentence)
+        warnings.append(sentence)
     told = summary.summary(source, control_points, choice, transform, temperature, result)
     told |= {"output": str(output), "files": files, "warnings": warnings, "seconds": stages.seconds}
     out = sys.stderr if to_stdout else sys.stdout
@@ -115,8 +123,17 @@ def _offsets(moves: list[str]) -> dict[str, list[float]]:
     return offsets
 
 
-def _write(shape: Shape, result: Deformation, output: Path, *, force: bool) -> list[str]:
-    """Write the shape, and return the files written."""
+def _check_side_files(shape: Shape, output: Path, *, force: bool) -> None:
+    """Refuse buffers of a glTF file that are to be written beside the output and are there already."""
+    first = output.with_suffix(".bin")
+    if shape.format != "glTF" or force or not first.is_file():
+        return
+    for name in shape.encode(shape.positions / 2, stem=output.stem)[1]:  # whatever the positions, if they are others
+        outputs.check_output(output.parent / name, force=force)
+
+
+def _write(shape: Shape, result: Deformation, output: Path, *, force: bool) -> tuple[list[str], list[str]]:
+    """Write the shape; return the files written, and warnings of files beside it that were kept."""
     if output == outputs.STANDARD_OUTPUT:
         data, side_files = shape.encode(result.positions, maps=result.maps)
         if side_files:
@@ -126,5 +143,8 @@ def _write(shape: Shape, result: Deformation, output: Path, *, force: bool) -> l
             )
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()
-        return []
-    return [str(path) for path in shape.write(output, result.positions, maps=result.maps, overwrite=force)]
+        return [], []
+    with python_warnings.catch_warnings(record=True) as caught:
+        python_warnings.simplefilter("always")
+        written = shape.write(output, result.positions, maps=result.maps, overwrite=force)
+    return [str(path) for path in written], [str(warning.message) for warning in caught]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from neuralmls.cli.stages import Stages
 from neuralmls.cli.weights import WeightsChoice
 from neuralmls.control_points import ControlPoints
 from neuralmls.deformer import Deformer, Floats, Transform
-from neuralmls.errors import FileError
+from neuralmls.errors import ControlPointError, FileError
 from neuralmls.shape import Shape
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, softmax
 
@@ -42,6 +43,20 @@ def check_size(shape: Shape) -> None:
         count = len(shape.positions)
         found = "there is only one vertex" if count == 1 else f"all {count} vertices are in one place"
         raise FileError(f"{shape.path}: {found}, so that there is no size to measure by")
+
+
+def check_points(points: ControlPoints, file: Path, shape: Shape) -> list[str]:
+    """Warn of control points that lie far outside of the shape.
+
+    Raises
+    ------
+    ControlPointError
+        They have another dimension than the shape; the message names both files.
+    """
+    try:
+        return points.check(shape.bounds)
+    except ControlPointError as error:
+        raise ControlPointError(f"{file}, for {shape.path}: {error}") from None
 
 
 def longest_side(shape: Shape) -> float:

@@ -62,17 +62,19 @@ def render(
     outputs.check_output(output, force=force, inputs=[*shapes, *([points] if points else [])])
 
     from neuralmls.arrays import as_number
+    from neuralmls.cli.deformation import check_points
     from neuralmls.control_points import ControlPoints
     from neuralmls.figures.render import Panel
     from neuralmls.figures.render import render as draw
     from neuralmls.shape import read
 
     as_number("temperature", temperature, 0)
+    choice.check()
     stages = Stages(quiet=quiet)
     sources = [read(path) for path in shapes]
     control_points = None if points is None else ControlPoints.read(points)
-    if control_points is not None:
-        for sentence in control_points.check(sources[0].bounds):
+    if points is not None and control_points is not None:
+        for sentence in check_points(control_points, points, sources[0]):
             console.warning(sentence)
     values: list[NDArray[np.float64] | None] = [None] * len(sources)
     if control_points is not None and heat is not None:

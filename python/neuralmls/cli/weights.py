@@ -73,6 +73,21 @@ class WeightsChoice:
         """The name of the stage in which they are made."""
         return "train" if self.kind == "neural" else "bind"
 
+    def check(self) -> None:
+        """Refuse parameters out of their range, before anything is read.
+
+        Raises
+        ------
+        ArgumentError
+            There is one.
+        """
+        from neuralmls.weights import InverseDistanceWeights
+        from neuralmls.weights.neural import check_training
+
+        options = self._options("seed", "width", "steps")
+        check_training(**{"seed": 0, "width": 1, "steps": None, **options})
+        InverseDistanceWeights([[0.0]], **self._options("alpha", "epsilon"))
+
     def make(
         self, sources: NDArray[np.float64], bounds: NDArray[np.float64], progress: Callable[[float], None]
     ) -> NeuralWeights | InverseDistanceWeights:
@@ -85,8 +100,11 @@ class WeightsChoice:
         """
         from neuralmls.weights import InverseDistanceWeights, NeuralWeights
 
-        given = {name: getattr(self, name) for name in ("alpha", "epsilon", "width", "steps", "seed")}
-        options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
         if self.kind == "neural":
-            return NeuralWeights.fit(sources, bounds=bounds, progress=progress, **options)
-        return InverseDistanceWeights(sources, bounds=bounds, **options)
+            training = self._options("width", "steps", "seed")
+            return NeuralWeights.fit(sources, bounds=bounds, progress=progress, **training)
+        return InverseDistanceWeights(sources, bounds=bounds, **self._options("alpha", "epsilon"))
+
+    def _options(self, *names: str) -> dict[str, Any]:
+        """The parameters of these names that the person gave."""
+        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from neuralmls import _core
-from neuralmls.arrays import Progress, as_box, as_number, as_points
+from neuralmls.arrays import Progress, as_box, as_number, as_points, box_around
 
 
 class InverseDistanceWeights:
@@ -22,7 +22,8 @@ class InverseDistanceWeights:
         Caps the weight near a control point, which then is no longer met exactly; in units of `d^(2 alpha)`.
     bounds : (2, d), optional
         The shape's box. With it, distances are measured in halves of its longest side, so that the same
-        epsilon means the same for a shape of any size; without it, in the units of the coordinates.
+        epsilon means the same for a shape of any size; without it, in the units of the coordinates (where epsilon
+        is 0, in halves of the longest side of the control points' box: the weights are the same).
 
     Raises
     ------
@@ -49,7 +50,11 @@ class InverseDistanceWeights:
         self._p.flags.writeable = False
         self.alpha = as_number("alpha", alpha, 0)
         self.epsilon = as_number("epsilon", epsilon, 0, open_low=False)
-        self._half = 1.0 if bounds is None else as_box(bounds, self._p.shape[1])[1]
+        self._half = 1.0
+        if bounds is not None:
+            self._half = as_box(bounds, self._p.shape[1])[1]
+        elif self.epsilon == 0:  # any unit gives the same weights, and this one no overflow
+            self._half = box_around(self._p)[1]
         self.logits(self._p[:0])  # refuses what the core refuses now, not at the first use
 
     @property

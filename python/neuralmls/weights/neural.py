@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from neuralmls import _core
-from neuralmls.arrays import Progress, as_box, as_count, as_number, as_points
+from neuralmls.arrays import Progress, as_box, as_count, as_number, as_points, box_around
 from neuralmls.errors import ArgumentError, FileError
 from neuralmls.point_tree import PointTree
 
@@ -78,14 +78,11 @@ class NeuralWeights:
         np.int64(0)
         """
         p = as_points("control_points", control_points)
-        as_count("seed", seed, 0, 2**64 - 1)
-        as_count("width", width, 1, 1 << 14)
-        if steps is not None:
-            as_count("steps", steps, 1, 1_000_000)
+        check_training(seed, width, steps)
         as_number("rate", rate, 0)
         if fourier_sigma is not None:
             as_number("fourier_sigma", fourier_sigma, 0)
-        centre, half = _box(p, bounds)
+        centre, half = box_around(p) if bounds is None else as_box(bounds, p.shape[1])
         network, losses, loss = _core.fit(p, centre, half, width, steps, rate, seed, fourier_sigma, progress)
         return cls(p, network, losses, loss)
 
@@ -183,17 +180,21 @@ class NeuralWeights:
             raise FileError(f"{path}: this is no network that NeuralWeights.save wrote: {error}") from error
 
 
+def check_training(seed: int, width: int, steps: int | None) -> None:
+    """Refuse what `NeuralWeights.fit` would.
+
+    Raises
+    ------
+    ArgumentError
+        A number is out of its range.
+    """
+    as_count("seed", seed, 0, 2**64 - 1)
+    as_count("width", width, 1, 1 << 14)
+    if steps is not None:
+        as_count("steps", steps, 1, 1_000_000)
+
+
 def _single(array: NDArray[np.generic], dimensions: int) -> NDArray[np.float32]:
     if array.ndim != dimensions:
         raise ValueError(f"an array has {array.ndim} dimensions instead of {dimensions}")
     return np.ascontiguousarray(array, dtype=np.float32)
-
-
-def _box(p: NDArray[np.float64], bounds: ArrayLike | None) -> tuple[list[float], float]:
-    if bounds is not None:
-        return as_box(bounds, p.shape[1])
-    if len(p) == 0:
-        raise ArgumentError("control_points: expected at least one, found none")
-    if (p == p[0]).all():
-        return p[0].tolist(), 1.0
-    return as_box(np.stack([p.min(axis=0), p.max(axis=0)]), p.shape[1])

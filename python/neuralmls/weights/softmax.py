@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from neuralmls.arrays import as_number
+from neuralmls.errors import ArgumentError
 
 
 def softmax(logits: ArrayLike, temperature: float = 1.0) -> NDArray[np.float64]:
@@ -26,7 +27,7 @@ def softmax(logits: ArrayLike, temperature: float = 1.0) -> NDArray[np.float64]:
     Raises
     ------
     ArgumentError
-        The temperature is not a number above 0.
+        The temperature is not a number above 0; the logits are no numbers, or there are none to a row.
 
     Examples
     --------
@@ -34,7 +35,12 @@ def softmax(logits: ArrayLike, temperature: float = 1.0) -> NDArray[np.float64]:
     [[0.25, 0.75]]
     """
     t = as_number("temperature", temperature, 0)
-    values = np.asarray(logits, dtype=np.float64)
+    try:
+        values = np.asarray(logits, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise ArgumentError(f"logits: expected an (n, m) array of numbers: {error}") from error
+    if values.ndim == 0 or values.shape[-1] == 0:
+        raise ArgumentError(f"logits: expected an (n, m) array with m of at least 1, found shape {values.shape}")
     largest = values.max(axis=-1, keepdims=True)
     with np.errstate(invalid="ignore"):  # infinity less infinity, which is a tie
         below = np.where(values == largest, 0.0, values - largest)
