@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from neuralmls.cli.stages import Stages
 from neuralmls.cli.weights import WeightsChoice
 from neuralmls.control_points import ControlPoints
-from neuralmls.deformer import Deformer, Floats, Transform
+from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ControlPointError, FileError
+from neuralmls.protocol import Transform
 from neuralmls.shape import Shape
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, softmax
 
