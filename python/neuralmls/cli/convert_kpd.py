@@ -18,7 +18,8 @@ from neuralmls.cli import console, options, outputs
 def convert_kpd(*, checkpoint: Path, output: Path, quiet: bool, force: bool) -> None:
     """Convert published weights of KeypointDeformer.
 
-    A PyTorch file can hold any program. It is read as data: nothing in it is executed, and what is no tensor is refused.
+    A PyTorch file can hold any program. It is read as data: nothing in it is executed,
+    and what is no tensor is refused.
     """
     outputs.check_ending(output, ("safetensors",), "weights")
     outputs.check_output(output, force=force, inputs=[checkpoint])
