@@ -17,7 +17,7 @@ from neuralmls._core import VERSION as __version__
 if TYPE_CHECKING:
     from neuralmls.control_points import ControlPoints
     from neuralmls.deformer import Deformer
-    from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
+    from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError, NotApplicable
     from neuralmls.exact import Aim, ExactHandles
     from neuralmls.pipeline import deform
     from neuralmls.placement import farthest_points
@@ -37,6 +37,7 @@ __all__ = [
     "InverseDistanceWeights",
     "NeuralMLSError",
     "NeuralWeights",
+    "NotApplicable",
     "PointTree",
     "Shape",
     "Weights",
@@ -60,6 +61,7 @@ _HOMES = {
     "InverseDistanceWeights": "weights",
     "NeuralMLSError": "errors",
     "NeuralWeights": "weights",
+    "NotApplicable": "errors",
     "PointTree": "point_tree",
     "Shape": "shape",
     "Weights": "weights",

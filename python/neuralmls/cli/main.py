@@ -15,7 +15,7 @@ from neuralmls.errors import ArgumentError, NeuralMLSError
 
 BAD_DATA, WRONG_USE, INTERRUPTED = 1, 2, 130
 
-COMMANDS = ("deform", "inspect", "points", "render", "sample", "demo")
+COMMANDS = ("deform", "inspect", "points", "render", "sample", "demo", "convert-kpd")
 
 
 class Commands(click.Group):
@@ -27,7 +27,8 @@ class Commands(click.Group):
     def get_command(self, _: click.Context, name: str) -> click.Command | None:
         if name not in COMMANDS:
             return None
-        command: click.Command = getattr(import_module(f"neuralmls.cli.{name}"), name)
+        module = name.replace("-", "_")
+        command: click.Command = getattr(import_module(f"neuralmls.cli.{module}"), module)
         return command
 
 
