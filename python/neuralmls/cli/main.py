@@ -11,6 +11,8 @@ import typer
 from typer.main import get_command
 
 from neuralmls.cli import console
+from neuralmls.cli.benchmark import benchmark
+from neuralmls.cli.compare import compare
 from neuralmls.cli.deform import deform
 from neuralmls.cli.demo import demo
 from neuralmls.cli.inspect import inspect
@@ -32,8 +34,9 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-for command in (deform, inspect, points, render, sample, demo):
+for command in (deform, inspect, points, render, compare, sample, demo):
     app.command()(command)
+app.add_typer(benchmark)
 
 
 def _version(asked: bool) -> None:
