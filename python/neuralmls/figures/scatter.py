@@ -62,7 +62,9 @@ def scatter(points: Mapping[str, ArrayLike], path: str | os.PathLike[str], *, x_
         pairs = np.asarray(values, dtype=np.float64).reshape(-1, 2)
         pairs = pairs[np.isfinite(pairs).all(axis=1)]
         if len(pairs):
-            axes.scatter(*pairs.T, label=name, marker=MARKS[number % len(MARKS)], s=48, alpha=0.85, linewidths=0)
+            axes.scatter(
+                pairs[:, 0], pairs[:, 1], label=name, marker=MARKS[number % len(MARKS)], s=48, alpha=0.85, linewidths=0
+            )
             drawn.append(pairs)
     if not drawn:
         raise ArgumentError(f"{path}: expected at least one finite point to draw, found none")
