@@ -43,15 +43,15 @@ def arap(shape: Shape, p: ArrayLike, q: ArrayLike) -> NDArray[np.float64]:
     Source
     ------
     Sorkine, Alexa, "As-Rigid-As-Possible Surface Modeling", SGP 2007; Chao et al. 2010 for the energy. 50 iterations
-    from the rest positions.
+    from the rest positions, moved by the mean of what the control points move by.
 
     Examples
     --------
     >>> import tempfile, pathlib, neuralmls as nm
     >>> path = pathlib.Path(tempfile.mkdtemp(), "triangle.obj")
     >>> _ = path.write_text("v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n")
-    >>> arap(nm.read(path), [[0, 0, 0], [1, 0, 0]], [[0, 0, 0], [1, 0, 0]]).tolist()
-    [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+    >>> arap(nm.read(path), [[0, 0, 0]], [[0, 0, 1]]).round(6).tolist()
+    [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]]
     """
     x, sources, targets = arguments("ARAP", shape, p, q)
     igl = library("igl")
@@ -64,9 +64,10 @@ def arap(shape: Shape, p: ArrayLike, q: ArrayLike) -> NDArray[np.float64]:
     data = igl.ARAPData()
     try:
         igl.arap_precomputation(rest, faces, 3, held.astype(np.int32), data)
-        constraints = rest[held] + (targets - sources) / half
+        offsets = (targets - sources) / half
+        constraints = rest[held] + offsets
         data.max_iter = ITERATIONS - ITERATIONS // 10
-        before = igl.arap_solve(constraints, data, rest)
+        before = igl.arap_solve(constraints, data, rest + offsets.mean(axis=0))
         data.max_iter = ITERATIONS // 10
         after: NDArray[np.float64] = finite("ARAP", igl.arap_solve(constraints, data, before))
     except RuntimeError as error:

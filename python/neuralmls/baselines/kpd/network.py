@@ -100,7 +100,7 @@ def _linear(layers: Mapping[str, Array], name: str, x: Array) -> Array:
 
 
 def _leaky(x: Array) -> Array:
-    return np.where(x > 0, x, LEAK * x)
+    return np.maximum(x, LEAK * x)
 
 
 def _point_net(layers: Mapping[str, Array], head: str, x: Array) -> Array:
@@ -111,4 +111,5 @@ def _point_net(layers: Mapping[str, Array], head: str, x: Array) -> Array:
         for i in (1, 2):
             code = np.maximum(_linear(layers, f"{head}.0.0.conv{i}.conv", code), 0.0)
         largest.append(_linear(layers, f"{head}.0.0.conv3.conv", code).max(axis=0))
-    return np.max(largest, axis=0)
+    whole: Array = np.max(largest, axis=0)
+    return whole
