@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 benchmark = typer.Typer(
     name="benchmark",
     help="Measure the methods where the truth is known.",
-    no_args_is_help=True,
     rich_markup_mode=None,
 )
 
@@ -118,7 +118,7 @@ def _show(rows: list[dict[str, Any]], names: list[str]) -> None:
     for row in rows:
         for name, reason in row["not_applicable"].items():
             where = f"{Path(row['file']).stem}, {row['control_points']} control points"
-            console.line(f"  {POSE_METHODS[name].title} does not apply to {where}: {reason}")
+            console.line(f"  {POSE_METHODS[name].title} does not apply to {where}: {reason}", sys.stdout)
 
 
 def _names(text: str, known: list[str]) -> list[str]:

@@ -10,7 +10,7 @@ import typer
 
 from neuralmls.cli import console, outputs
 from neuralmls.cli.stages import Stages
-from neuralmls.errors import ControlPointError
+from neuralmls.errors import ArgumentError, ControlPointError
 
 if TYPE_CHECKING:
     from neuralmls.control_points import ControlPoints
@@ -69,6 +69,10 @@ def compare(
     warnings = deformation.check_points(control_points, points, source)
     if not (control_points.sources != control_points.targets).any():
         raise ControlPointError(f"{points}: no control point is moved, so that there is nothing to compare")
+    if scatter is not None and (source.faces is None or source.positions.shape[1] != 3):
+        raise ArgumentError(f"--scatter: distortion is that of a surface, and {shape} has no faces")
+    if output is not None:
+        outputs.make_folder(output)
     for sentence in warnings:
         console.warning(sentence)
     load_libraries()
@@ -78,16 +82,14 @@ def compare(
             results[name] = attempt(method, source, control_points.sources, control_points.targets)
     told: dict[str, Any] = {"input": str(shape), "points": str(points), "unit": deformation.longest_side(source) / 2}
     told |= comparison.document(source, results) | {"files": [], "warnings": warnings}
-    if output is not None:
-        outputs.make_folder(output)
-        for name, file in deformed.items():
-            positions = results[name].positions
-            if positions is not None:
-                files, kept = outputs.write_shape(source, file, positions, force=force)
-                told["files"] += files
-                for sentence in kept:
-                    console.warning(sentence)
-                    warnings.append(sentence)
+    for name, file in deformed.items():
+        positions = results[name].positions
+        if positions is not None:
+            files, kept = outputs.write_shape(source, file, positions, force=force)
+            told["files"] += files
+            for sentence in kept:
+                console.warning(sentence)
+                warnings.append(sentence)
     if csv is not None:
         comparison.write_csv(csv, told["methods"])
     if picture is not None:
