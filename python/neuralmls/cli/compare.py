@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
+import click
 
-from neuralmls.cli import console, outputs
+from neuralmls.cli import console, options, outputs
 from neuralmls.cli.stages import Stages
 from neuralmls.errors import ArgumentError, ControlPointError
 
@@ -18,21 +18,31 @@ if TYPE_CHECKING:
     from neuralmls.shape import Shape
 
 
+@click.command()
+@options.shape
+@options.points("The control points and their targets, JSON or CSV.")
+@click.option(
+    "--kpd", metavar="FILE", type=options.PATH, help="KeypointDeformer's weights for such shapes, .safetensors."
+)
+@click.option("--output", "-o", metavar="FOLDER", type=options.PATH, help="Write each deformed shape into it.")
+@click.option("--picture", type=options.PATH, help="Draw the source and all results, .png.")
+@click.option("--scatter", type=options.PATH, help="Draw distortion against control-point error, .png.")
+@click.option("--csv", type=options.PATH, help="Write every figure, .csv.")
+@options.json
+@options.quiet
+@options.force
 def compare(
-    shape: Annotated[Path, typer.Argument(metavar="SHAPE", help="OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV or NPY.")],
-    points: Annotated[Path, typer.Option(help="The control points and their targets, JSON or CSV.")],
-    kpd: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="KeypointDeformer's weights for such shapes, .safetensors.")
-    ] = None,
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FOLDER", help="Write each deformed shape into it.")
-    ] = None,
-    picture: Annotated[Path | None, typer.Option(help="Draw the source and all results, .png.")] = None,
-    scatter: Annotated[Path | None, typer.Option(help="Draw distortion against control-point error, .png.")] = None,
-    csv: Annotated[Path | None, typer.Option("--csv", help="Write every figure, .csv.")] = None,
-    json: Annotated[bool, typer.Option("--json", help="Every figure as JSON, for machines.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No tables and no progress.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Overwrite files that are there.")] = False,
+    *,
+    shape: Path,
+    points: Path,
+    kpd: Path | None,
+    output: Path | None,
+    picture: Path | None,
+    scatter: Path | None,
+    csv: Path | None,
+    json: bool,
+    quiet: bool,
+    force: bool,
 ) -> None:
     """Deform a shape by every method that can, and measure each.
 
