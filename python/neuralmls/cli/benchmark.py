@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from neuralmls.experiments.poses import Poses
 
 
-@click.group()
+@click.group(no_args_is_help=False)
 def benchmark() -> None:
     """Measure the methods where the truth is known."""
 
