@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from neuralmls.placement import farthest_points
     from neuralmls.point_tree import PointTree
     from neuralmls.shape import Shape, read
-    from neuralmls.weights import InverseDistanceWeights, NeuralWeights, Weights
+    from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
     from neuralmls.weights.softmax import softmax
 
 __all__ = [
@@ -40,6 +40,7 @@ __all__ = [
     "NotApplicable",
     "PointTree",
     "Shape",
+    "ShapeAwareWeights",
     "Weights",
     "__version__",
     "deform",
@@ -64,6 +65,7 @@ _HOMES = {
     "NotApplicable": "errors",
     "PointTree": "point_tree",
     "Shape": "shape",
+    "ShapeAwareWeights": "weights",
     "Weights": "weights",
     "deform": "pipeline",
     "farthest_points": "placement",

@@ -73,6 +73,7 @@ def fit(
     seed: int,
     fourier_sigma: float | None,
     progress: _Progress,
+    samples: tuple[NDArray[np.float64], NDArray[np.float32], int] | None = None,
 ) -> tuple[Network, list[float], float]: ...
 def train(
     network: Network, p: NDArray[np.float64], steps: int | None, rate: float, progress: _Progress

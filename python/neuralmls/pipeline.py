@@ -11,9 +11,9 @@ from neuralmls.arrays import as_points
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ArgumentError
 from neuralmls.protocol import Transform
-from neuralmls.weights import InverseDistanceWeights, NeuralWeights, Weights
+from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
 
-WeightsName: TypeAlias = Literal["neural", "inverse-distance"]
+WeightsName: TypeAlias = Literal["neural", "shape-aware", "inverse-distance"]
 
 
 def deform(
@@ -22,6 +22,7 @@ def deform(
     q: ArrayLike,
     *,
     weights: WeightsName | Weights = "neural",
+    faces: ArrayLike | None = None,
     transform: Transform = "rigid",
     temperature: float = 1.0,
     exact: bool = False,
@@ -37,13 +38,15 @@ def deform(
         Points: float32 or float64, of any memory layout; never changed.
     p, q : (m, d)
         Control points at rest and moved, in the coordinates of `x`.
-    weights : "neural", "inverse-distance", or a weight function of the control points `p`
+    weights : "neural", "shape-aware", "inverse-distance", or a weight function of the control points `p`
+    faces : (f, 3) integers, optional
+        Triangles of the points, for shape-aware weights; without them the points are a cloud.
     transform : "rigid", "similarity" or "affine"
     temperature : float > 0
     exact : bool
         Whether the control points go all the way to their targets (see `ExactHandles`), not only near them.
     seed : int
-        Of the network's training (neural weights only).
+        Of the network's training (neural and shape-aware weights).
 
     Returns
     -------
@@ -53,6 +56,8 @@ def deform(
     ------
     ArgumentError
         An argument is out of its range, or does not fit another.
+    NeuralMLSError
+        Shape-aware weights need SciPy, and it is not installed.
 
     Examples
     --------
@@ -69,10 +74,14 @@ def deform(
     function: Weights
     if isinstance(weights, str) and weights == "neural":
         function = NeuralWeights.fit(sources, bounds=_bounds(points), seed=seed)
+    elif isinstance(weights, str) and weights == "shape-aware":
+        function = ShapeAwareWeights.fit(sources, points, faces, seed=seed)
     elif isinstance(weights, str) and weights == "inverse-distance":
         function = InverseDistanceWeights(sources, bounds=_bounds(points))
     elif isinstance(weights, str) or not hasattr(weights, "control_points"):
-        raise ArgumentError(f"weights: expected 'neural', 'inverse-distance' or a weight function, found {weights!r}")
+        raise ArgumentError(
+            f"weights: expected 'neural', 'shape-aware', 'inverse-distance' or a weight function, found {weights!r}"
+        )
     else:
         function = weights
         if not np.array_equal(as_points("weights.control_points", function.control_points), sources):

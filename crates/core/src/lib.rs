@@ -35,6 +35,6 @@ pub use error::Error;
 pub use exact::{Aim, ExactHandles};
 pub use frame::Frame;
 pub use logits::inverse_distance::InverseDistance;
-pub use logits::neural::{Fit, Layer, Network, Schedule, Training};
+pub use logits::neural::{Fit, Layer, Network, Samples, Schedule, Training};
 pub use mls::Transform;
 pub use tree::{Order, PointTree};

@@ -1,6 +1,6 @@
 //! Weight functions.
 
-use neuralmls_core::{Error, Fit, Frame, InverseDistance, Layer, Schedule, Training};
+use neuralmls_core::{Error, Fit, Frame, InverseDistance, Layer, Samples, Schedule, Training};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -154,9 +154,12 @@ fn trained(fit: Fit) -> Trained {
     (Network(fit.network), fit.losses, fit.loss)
 }
 
+/// Points with soft labels, n x m, and how many of them a step looks at.
+type SampleArrays<'py> = (PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, f32>, usize);
+
 /// Makes a network from a seed and trains it; `steps` None: until the loss is small.
 #[pyfunction]
-#[pyo3(signature = (p, centre, half, width, steps, rate, seed, fourier_sigma, progress))]
+#[pyo3(signature = (p, centre, half, width, steps, rate, seed, fourier_sigma, progress, samples=None))]
 #[allow(clippy::too_many_arguments)] // One a keyword of the package's own function.
 pub(crate) fn fit(
     py: Python<'_>,
@@ -169,12 +172,21 @@ pub(crate) fn fit(
     seed: u64,
     fourier_sigma: Option<f64>,
     progress: Option<Py<PyAny>>,
+    samples: Option<SampleArrays<'_>>,
 ) -> PyResult<Trained> {
     let (dim, frame) = (p.shape()[1], frame(&centre, half)?);
     let training = Training { width, schedule: schedule(steps), rate, seed, fourier_sigma };
     let points = p.as_slice()?;
-    run(py, progress, |report| neuralmls_core::logits::neural::fit(points, dim, frame, &training, report))
-        .map(trained)
+    let samples = match &samples {
+        Some((x, labels, batch)) => {
+            Some(Samples { x: x.as_slice()?, labels: labels.as_slice()?, batch: *batch })
+        }
+        None => None,
+    };
+    let work = |report: &mut dyn FnMut(f64) -> bool| {
+        neuralmls_core::logits::neural::fit(points, samples, dim, frame, &training, report)
+    };
+    run(py, progress, work).map(trained)
 }
 
 /// Trains a given network.

@@ -3,6 +3,7 @@
 from neuralmls.protocol import Weights
 from neuralmls.weights.inverse_distance import InverseDistanceWeights
 from neuralmls.weights.neural import NeuralWeights
+from neuralmls.weights.shape_aware import ShapeAwareWeights
 from neuralmls.weights.softmax import softmax
 
-__all__ = ["InverseDistanceWeights", "NeuralWeights", "Weights", "softmax"]
+__all__ = ["InverseDistanceWeights", "NeuralWeights", "ShapeAwareWeights", "Weights", "softmax"]

@@ -28,6 +28,15 @@ impl Random {
         Layer { weight: draw(inputs * outputs), bias: draw(outputs) }
     }
 
+    /// Puts the numbers in an order of which all are equally likely (Fisher, Yates 1938; Durstenfeld 1964).
+    pub(super) fn shuffle(&mut self, numbers: &mut [usize]) {
+        for last in (1..numbers.len()).rev() {
+            // The product's high half: uniform but for one part in 2^32 / len.
+            let at = (u64::from(self.0.next_u32()) * (last as u64 + 1)) >> 32;
+            numbers.swap(last, at as usize);
+        }
+    }
+
     /// `B` of the Fourier features: 32 x d, normal with deviation `sigma` (Box and Muller 1958).
     pub(super) fn frequencies(&mut self, dim: usize, sigma: f64) -> Vec<f32> {
         let mut normal = || {

@@ -11,7 +11,9 @@ mod hidden;
 mod initialise;
 mod network;
 mod piecewise;
+mod samples;
 mod train;
 
 pub use network::{Layer, Network};
+pub use samples::Samples;
 pub use train::{fit, train, Fit, Schedule, Training};

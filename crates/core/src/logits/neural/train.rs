@@ -1,4 +1,4 @@
-//! Training: control point i is to be given the class i.
+//! Training: control point i is to be given the class i, and samples of a shape, where there are any, the labels that they have.
 //!
 //! Full-batch cross-entropy, Adam (Kingma, Ba 2015, as in `torch.optim.Adam`), rate 6e-4, and a tenth of it for the last fifth of the steps.
 //! Where it differs from the paper: by default it does not stop after a fixed 48 steps but when every control point has most
@@ -8,6 +8,7 @@ use super::adam::{Adam, Rates};
 use super::hidden::{Activations, Hidden};
 use super::initialise::Random;
 use super::network::{relu, Layer, Network};
+use super::samples::{sorted, Lessons, Samples};
 use super::{features, gemm};
 use crate::error::{check_number, check_points, Error};
 use crate::frame::Frame;
@@ -69,15 +70,18 @@ pub struct Fit {
     pub loss: f64,
 }
 
-/// Makes a network from a seed and trains it on the control points `p`.
+/// Makes a network from a seed and trains it on the control points `p`, and on `samples` of a shape where there are any.
 ///
-/// The result does not depend on the order of the control points (but that its outputs are in their order), nor on the number of
+/// With samples, the schedule is one of fixed steps, each of which sees all of the control points and a batch of the samples;
+/// the losses are those of a batch. The result does not depend on the order of the control points (but that its outputs are in their order), nor on the number of
 /// threads.
 ///
 /// # Errors
-/// [`Error::Cancelled`]; where there are no control points, more than 1,000, two in one place, or a parameter is out of range.
+/// [`Error::Cancelled`]; where there are no control points, more than 1,000, two in one place, or a parameter is out of range;
+/// where labels are no probabilities.
 pub fn fit(
     p: &[f64],
+    samples: Option<Samples<'_>>,
     dim: usize,
     frame: Frame,
     training: &Training,
@@ -100,9 +104,12 @@ pub fn fit(
     let layers = [random.layer(inputs, width), random.layer(width, width), random.layer(width, m)];
     let network = Network::new(dim, frame, frequencies, layers)?;
 
-    let order = lexicographic_order(p, dim);
-    let sorted: Vec<f64> = order.iter().flat_map(|&i| &p[dim * i..dim * i + dim]).copied().collect();
-    let mut fit = train(network, &sorted, training.schedule, training.rate, progress)?;
+    let (p, order) = sorted(p, dim);
+    let mut lessons = Lessons::of_control_points(&p, dim);
+    if let Some(samples) = samples {
+        lessons = lessons.with(samples, dim, &order, training.seed)?;
+    }
+    let mut fit = teach(network, lessons, training.schedule, training.rate, progress)?;
     fit.network.layers[2] = in_order(&fit.network.layers[2], &order);
     Ok(fit)
 }
@@ -119,13 +126,25 @@ pub fn train(
     progress: &mut Progress<'_>,
 ) -> Result<Fit, Error> {
     let m = check_control_points(p, network.dim())?;
-    check_number("rate", rate, rate > 0.0, "a number above 0")?;
     if network.outputs() != m {
         return Err(Error::argument(
             "network",
             format!("it has {} outputs, but there are {m} control points", network.outputs()),
         ));
     }
+    let lessons = Lessons::of_control_points(p, network.dim());
+    teach(network, lessons, schedule, rate, progress)
+}
+
+fn teach(
+    network: Network,
+    lessons: Lessons,
+    schedule: Schedule,
+    rate: f64,
+    progress: &mut Progress<'_>,
+) -> Result<Fit, Error> {
+    check_number("rate", rate, rate > 0.0, "a number above 0")?;
+    let one = network.outputs() == 1;
     let most = match schedule {
         Schedule::UntilSmall { at_most } => at_most,
         Schedule::Fixed(steps) => steps,
@@ -133,7 +152,7 @@ pub fn train(
     if !(1..=1_000_000).contains(&most) {
         return Err(Error::argument("steps", format!("expected 1 to 1000000, found {most}")));
     }
-    let mut trainer = Trainer::new(network, p);
+    let mut trainer = Trainer::new(network, lessons);
     let mut losses = Vec::new();
     let mut slow_from = most * 4 / 5;
     let mut end = most;
@@ -146,7 +165,7 @@ pub fn train(
             slow_from = step;
             end = step + step.div_ceil(4);
         }
-        if step == end || m == 1 {
+        if step == end || one {
             break mean;
         }
         losses.push(mean);
@@ -173,7 +192,7 @@ fn check_control_points(p: &[f64], dim: usize) -> Result<usize, Error> {
     Ok(m)
 }
 
-fn lexicographic_order(p: &[f64], dim: usize) -> Vec<usize> {
+pub(super) fn lexicographic_order(p: &[f64], dim: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..p.len() / dim).collect();
     let point = |i: usize| &p[dim * i..dim * i + dim];
     order.sort_by(|&a, &b| point(a).partial_cmp(point(b)).expect("finite"));
@@ -196,7 +215,7 @@ struct Losses {
     worst: f64,
 }
 
-/// The network with what one step needs. Activations and errors are stored neuron by neuron, neurons x control points.
+/// The network with what one step needs. Activations and errors are stored neuron by neuron, neurons x the batch's points.
 struct Trainer {
     network: Network,
     hidden: Hidden,
@@ -204,7 +223,11 @@ struct Trainer {
     weights: [Adam; 2],
     biases: [Adam; 3],
     steps: i32,
-    m: usize,
+    lessons: Lessons,
+    /// Of all points, point by point.
+    features: Vec<f32>,
+    /// The points of the step.
+    batch: Vec<usize>,
     input: Vec<f32>,
     /// After the first ReLU; also in the layout that the middle layer takes.
     first: Vec<f32>,
@@ -216,16 +239,20 @@ struct Trainer {
 }
 
 impl Trainer {
-    fn new(network: Network, p: &[f64]) -> Trainer {
-        let m = p.len() / network.dim();
-        let features = network.features(p);
-        let width = features.len() / m;
-        let input: Vec<f32> = (0..features.len()).map(|at| features[at % m * width + at / m]).collect();
+    fn new(network: Network, mut lessons: Lessons) -> Trainer {
+        let features = network.features(&lessons.points);
         let [a, b, c] = network.layers();
-        let first = activations(a, &input, m);
-        // A neuron that fires for no control point has no gradient, and so never will.
-        let fires = |neuron: &usize| first[neuron * m..(neuron + 1) * m].iter().any(|value| *value > 0.0);
+        let every: Vec<usize> = (0..features.len() / a.inputs()).collect();
+        let everywhere = activations(a, &columns(&features, a.inputs(), &every), every.len());
+        // A neuron that fires for no point has no gradient, and so never will.
+        let fires = |neuron: &usize| {
+            everywhere[neuron * every.len()..(neuron + 1) * every.len()].iter().any(|value| *value > 0.0)
+        };
         let hidden = Hidden::new(b, (0..a.outputs()).filter(fires).collect());
+        let batch = lessons.next();
+        let m = batch.len();
+        let input = columns(&features, a.inputs(), &batch);
+        let first = activations(a, &input, m);
         let first_lanes = Activations::of(&first, m, hidden.inputs());
         let product = hidden.forward(&first_lanes, m);
         let mut trainer = Trainer {
@@ -233,12 +260,14 @@ impl Trainer {
             weights: [a, c].map(|layer| Adam::new(&layer.weight)),
             biases: [a, b, c].map(|layer| Adam::new(&layer.bias)),
             steps: 0,
-            m,
+            lessons,
+            features,
+            error: vec![0.0; c.outputs() * m],
+            batch,
             input,
             first,
             first_lanes,
             second: Vec::new(),
-            error: vec![0.0; c.outputs() * m],
             network,
         };
         trainer.activate_second(product);
@@ -247,7 +276,7 @@ impl Trainer {
 
     /// Takes the middle layer's product with the first activations, without its biases.
     fn activate_second(&mut self, mut product: Vec<f32>) {
-        for (row, bias) in product.chunks_exact_mut(self.m).zip(&self.network.layers[1].bias) {
+        for (row, bias) in product.chunks_exact_mut(self.batch.len()).zip(&self.network.layers[1].bias) {
             row.iter_mut().for_each(|z| *z = (*z + bias).max(0.0));
         }
         self.second = product;
@@ -255,30 +284,33 @@ impl Trainer {
 
     /// The losses of the network as it is; leaves the gradient with respect to the logits in `error`.
     fn forward(&mut self) -> Losses {
-        let m = self.m;
-        gemm::forward(&self.network.layers[2], &self.second, m, &mut self.error);
+        let n = self.batch.len();
+        gemm::forward(&self.network.layers[2], &self.second, n, &mut self.error);
         let (mut sum, mut worst) = (0.0, 0.0f64);
+        let m = self.network.outputs();
         let mut column = vec![0.0; m];
-        for i in 0..m {
+        for (i, point) in self.batch.iter().enumerate() {
+            let labels = &self.lessons.labels[m * point..m * (point + 1)];
             for (c, logit) in column.iter_mut().enumerate() {
-                *logit = f64::from(self.error[c * m + i]);
+                *logit = f64::from(self.error[c * n + i]);
             }
             let largest = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let total: f64 = column.iter().map(|l| (l - largest).exp()).sum();
-            let loss = total.ln() + largest - column[i];
+            let likely: f64 = column.iter().zip(labels).map(|(logit, label)| logit * f64::from(*label)).sum();
+            let loss = total.ln() + largest - likely;
             sum += loss;
             worst = worst.max(loss);
-            for (c, logit) in column.iter().enumerate() {
+            for ((c, logit), label) in column.iter().enumerate().zip(labels) {
                 let probability = (logit - largest).exp() / total;
-                self.error[c * m + i] = ((probability - f64::from(u8::from(c == i))) / m as f64) as f32;
+                self.error[c * n + i] = ((probability - f64::from(*label)) / n as f64) as f32;
             }
         }
-        Losses { mean: sum / m as f64, worst }
+        Losses { mean: sum / n as f64, worst }
     }
 
     /// One step of Adam after [`Trainer::forward`], and the activations of the network that it gives.
     fn step(&mut self, rate: f64) {
-        let m = self.m;
+        let m = self.batch.len();
         self.steps += 1;
         let rates = Rates::new(rate, self.steps);
         let [a, b, c] = &mut self.network.layers;
@@ -297,6 +329,8 @@ impl Trainer {
         self.weights[0].update_weights(&mut a.weight, &first_error, &self.input, m, rates);
         self.biases[0].update_biases(&mut a.bias, &first_error, m, rates);
 
+        self.batch = self.lessons.next();
+        self.input = columns(&self.features, a.inputs(), &self.batch);
         self.first = activations(a, &self.input, m);
         let next = Activations::of(&self.first, m, self.hidden.inputs());
         let product = self.hidden.update_and_forward(&second_error, &self.first_lanes, &next, m, rates);
@@ -308,6 +342,11 @@ impl Trainer {
         self.hidden.store(&mut self.network.layers[1]);
         self.network
     }
+}
+
+/// The features of some points, `count` each, as columns: `count` x the points.
+fn columns(features: &[f32], count: usize, points: &[usize]) -> Vec<f32> {
+    (0..count).flat_map(|k| points.iter().map(move |point| features[point * count + k])).collect()
 }
 
 /// `relu(W input + b)`, outputs x m.

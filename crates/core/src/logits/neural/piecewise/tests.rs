@@ -18,7 +18,7 @@ fn trained(dim: usize, width: usize, m: usize) -> Network {
     let p = uniform(m, dim, 3);
     let frame = Frame { centre: [0.5; 3], half: 2.0 };
     let training = Training { width, schedule: Schedule::Fixed(60), rate: 3e-3, ..Training::default() };
-    fit(&p, dim, frame, &training, &mut |_| true).unwrap().network
+    fit(&p, None, dim, frame, &training, &mut |_| true).unwrap().network
 }
 
 /// Uniform in the box of half a side of 2 around 0.5.

@@ -9,7 +9,7 @@ fn small() -> Training {
 }
 
 fn fit_with(training: &Training) -> Fit {
-    fit(&P, 3, Frame::IDENTITY, training, &mut |_| true).unwrap()
+    fit(&P, None, 3, Frame::IDENTITY, training, &mut |_| true).unwrap()
 }
 
 /// Parameters of one layer in double precision, with Adam's moments: weight rows with the bias as the last column.
@@ -125,7 +125,7 @@ fn the_order_of_the_control_points_changes_the_order_of_the_outputs_alone() {
     let training = Training { schedule: Schedule::Fixed(20), ..small() };
     let reversed: Vec<f64> = P.chunks(3).rev().flatten().copied().collect();
     let there = fit_with(&training).network.logits(&P, &mut |_| true).unwrap();
-    let back = fit(&reversed, 3, Frame::IDENTITY, &training, &mut |_| true).unwrap();
+    let back = fit(&reversed, None, 3, Frame::IDENTITY, &training, &mut |_| true).unwrap();
     let back = back.network.logits(&P, &mut |_| true).unwrap();
     for (a, b) in there.chunks(4).zip(back.chunks(4)) {
         assert!(a.iter().eq(b.iter().rev()), "{a:?} {b:?}");
@@ -145,7 +145,7 @@ fn one_seed_gives_one_network_whatever_the_number_of_threads() {
 
 #[test]
 fn one_control_point_needs_no_training() {
-    let fit = fit(&[1.0, 2.0], 2, Frame::IDENTITY, &small(), &mut |_| true).unwrap();
+    let fit = fit(&[1.0, 2.0], None, 2, Frame::IDENTITY, &small(), &mut |_| true).unwrap();
     assert_eq!((fit.losses.len(), fit.loss), (0, 0.0));
 }
 
@@ -159,7 +159,7 @@ fn fourier_features_train_too() {
 #[test]
 fn refuses_what_cannot_be_trained() {
     let says = |p: &[f64], training: &Training| {
-        fit(p, 3, Frame::IDENTITY, training, &mut |_| true).unwrap_err().to_string()
+        fit(p, None, 3, Frame::IDENTITY, training, &mut |_| true).unwrap_err().to_string()
     };
     assert!(says(&[], &small()).contains("found 0"));
     assert!(says(&vec![0.5; 3003], &small()).contains("found 1001"));
@@ -173,7 +173,7 @@ fn refuses_what_cannot_be_trained() {
 #[test]
 fn stops_when_asked() {
     let mut calls = 0;
-    let result = fit(&P, 3, Frame::IDENTITY, &small(), &mut |_| {
+    let result = fit(&P, None, 3, Frame::IDENTITY, &small(), &mut |_| {
         calls += 1;
         calls < 5
     });
