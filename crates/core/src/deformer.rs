@@ -65,7 +65,8 @@ impl Deformer {
             let message = format!("expected {n} x {m} logits, found {}", logits.len());
             return Err(Error::argument("logits", message));
         }
-        if let Some(at) = logits.iter().position(|l| l.is_nan()) {
+        if logits.iter().fold(false, |found, l| found | l.is_nan()) {
+            let at = logits.iter().position(|l| l.is_nan()).unwrap_or_default();
             return Err(Error::argument("logits", format!("the one at ({}, {}) is NaN", at / m, at % m)));
         }
         let frame = Frame::around(&x, dim);

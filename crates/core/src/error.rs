@@ -41,7 +41,9 @@ pub(crate) fn check_points(name: &'static str, points: &[f64], dim: usize) -> Re
     if !points.len().is_multiple_of(dim) {
         return Err(Error::argument(name, format!("{} numbers are not whole points of {dim}", points.len())));
     }
-    if let Some(at) = points.iter().position(|c| !c.is_finite()) {
+    // Sooner said of all together than of each in turn.
+    if points.iter().fold(false, |found, c| found | !c.is_finite()) {
+        let at = points.iter().position(|c| !c.is_finite()).unwrap_or_default();
         return Err(Error::argument(name, format!("point {} has a coordinate that is not finite", at / dim)));
     }
     Ok(points.len() / dim)

@@ -21,6 +21,7 @@ pub mod deformer;
 mod error;
 pub mod frame;
 pub mod logits;
+mod memory;
 pub mod mls;
 mod parallel;
 pub mod progress;

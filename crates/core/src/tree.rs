@@ -16,7 +16,8 @@ use std::sync::Mutex;
 
 use crate::error::{check_points, Error};
 use crate::frame::Frame;
-use crate::parallel::{for_each_block, for_each_block_pair, for_each_task};
+use crate::memory::filled;
+use crate::parallel::for_each_task;
 use crate::progress::{report, Progress};
 use crate::simd::{Aligned, WIDTH};
 
@@ -105,8 +106,8 @@ impl PointTree {
             return Err(Error::argument("x", format!("expected at most 2^32 - 1 points, found {n}")));
         }
         report(progress, 0.0)?;
-        let mut points = vec![Point { x: [0.0; 3], index: 0 }; n];
-        for_each_block(&mut points, 1 << 12, |block, points| {
+        let blank = Point { x: [0.0; 3], index: 0 };
+        let mut points = filled(Vec::new(), n, blank, 1 << 12, |block, points| {
             let first = block << 12;
             for (i, (point, x)) in points.iter_mut().zip(x[dim * first..].chunks_exact(dim)).enumerate() {
                 *point = Point { x: frame.enter_single(x), index: (first + i) as u32 };
@@ -116,14 +117,14 @@ impl PointTree {
             vec![Region { centre: [0.0; 3], half: [0.0; 3] }; (2 * n.div_ceil(LEAF)).saturating_sub(1)];
         build(&mut points, &mut boxes, progress)?;
 
-        let mut order = vec![0; n];
-        let mut blocks = vec![[Aligned::ZERO; 3]; n.div_ceil(WIDTH)];
-        const PACK: usize = 256;
-        for_each_block_pair(&mut order, PACK * WIDTH, &mut blocks, PACK, |index, order, blocks| {
-            let points = &points[PACK * WIDTH * index..][..order.len()];
-            for (order, point) in order.iter_mut().zip(points) {
+        let order = filled(Vec::new(), n, 0, 1 << 12, |block, order| {
+            for (order, point) in order.iter_mut().zip(&points[block << 12..]) {
                 *order = point.index;
             }
+        });
+        const PACK: usize = 256;
+        let blocks = filled(Vec::new(), n.div_ceil(WIDTH), [Aligned::ZERO; 3], PACK, |index, blocks| {
+            let points = &points[PACK * WIDTH * index..];
             for (block, points) in blocks.iter_mut().zip(points.chunks(WIDTH)) {
                 for lane in 0..WIDTH {
                     let point = points[lane.min(points.len() - 1)];

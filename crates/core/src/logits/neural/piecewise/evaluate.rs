@@ -6,7 +6,7 @@ use super::columns::{sort, Sorted};
 use super::leaf::{self, Activations};
 use super::node::Part;
 use super::rows::Rows;
-use super::whole::{Whole, PACK};
+use super::whole::{Prepared, Whole, PACK};
 use crate::error::Error;
 use crate::logits::neural::{dense, network::Network};
 use crate::parallel::{for_each_block, for_each_task, threads, SharedRows};
@@ -39,7 +39,7 @@ pub(crate) fn write_logits(
     let walk = Walk {
         simd,
         network,
-        whole: Whole::new(network),
+        whole: Prepared::of(network),
         tree,
         order,
         logits: SharedRows::new(logits, network.outputs()),
@@ -51,7 +51,7 @@ pub(crate) fn write_logits(
 struct Walk<'a> {
     simd: Simd,
     network: &'a Network,
-    whole: Whole,
+    whole: &'a Whole,
     tree: &'a PointTree,
     order: Order,
     logits: SharedRows<'a>,
@@ -113,7 +113,7 @@ impl Walk<'_> {
         if let (Some(halves), true) = (halves, depth < DEPTH) {
             return halves.into_iter().for_each(|half| self.find_tops(half, depth + 1, level, tops, dense));
         }
-        let whole = &self.whole;
+        let whole = self.whole;
         sort(
             self.simd,
             &whole.part.columns,
@@ -144,13 +144,13 @@ impl Walk<'_> {
         for (at, Level { part, sorted }) in tops[..nodes.len()].iter_mut().enumerate() {
             part.begin(self.simd, &self.whole.part, region(at), sorted, panels);
         }
-        for first in (0..self.whole.rows()).step_by(PACK) {
+        for first in (0..panels).step_by(PACK) {
             if stop() {
                 return;
             }
-            self.whole.pack(self.network, first, rows);
+            let (rows, panels) = self.whole.panels(self.network, first, rows);
             for (at, Level { part, sorted }) in tops[..nodes.len()].iter_mut().enumerate() {
-                part.absorb(self.simd, &self.whole.heads, rows, region(at), sorted);
+                part.absorb(self.simd, &self.whole.heads, rows, panels.clone(), region(at), sorted);
             }
         }
         for_each_block(&mut tops[..nodes.len()], 1, |at, top| {
@@ -190,7 +190,7 @@ impl Walk<'_> {
         for half in halves {
             let region = self.tree.region(half);
             child.begin(self.simd, part, region, sorted, part.rows.panels());
-            child.absorb(self.simd, &self.whole.heads, &part.rows, region, sorted);
+            child.absorb(self.simd, &self.whole.heads, &part.rows, 0..part.rows.panels(), region, sorted);
             self.descend(half, child, levels, activations, stop);
         }
     }

@@ -1,5 +1,7 @@
 //! What is left of the network over a box.
 
+use std::ops::Range;
+
 use super::columns::{sort, Columns, Sorted, Term};
 use super::rows::{bound, splats, Rows};
 use crate::simd::{multiversion, Aligned, Lanes, Simd, WIDTH};
@@ -54,10 +56,11 @@ impl Part {
         simd: Simd,
         heads: &Heads,
         parent: &Rows,
+        panels: Range<usize>,
         region: &Region,
         sorted: &Sorted,
     ) {
-        absorb(simd, heads, parent, region, sorted, self);
+        absorb(simd, heads, parent, panels, region, sorted, self);
     }
 }
 
@@ -109,6 +112,7 @@ multiversion! {
     fn absorb(
         heads: &Heads,
         parent: &Rows,
+        panels: Range<usize>,
         region: &Region,
         sorted: &Sorted,
         child: &mut Part,
@@ -116,9 +120,15 @@ multiversion! {
 }
 
 #[inline(always)]
-fn absorb_body<L: Lanes>(heads: &Heads, parent: &Rows, region: &Region, sorted: &Sorted, child: &mut Part) {
-    let panels = parent.panels();
-    let mut p = 0;
+fn absorb_body<L: Lanes>(
+    heads: &Heads,
+    parent: &Rows,
+    panels: Range<usize>,
+    region: &Region,
+    sorted: &Sorted,
+    child: &mut Part,
+) {
+    let (mut p, panels) = (panels.start, panels.end);
     // Several panels at a time, so that there are more sums than an addition takes cycles: as many as there are registers for.
     while L::REGISTERS >= 32 && p + 4 <= panels {
         absorb_panels::<L, 4>(heads, parent, p, region, sorted, child);

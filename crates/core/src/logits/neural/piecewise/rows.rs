@@ -2,6 +2,7 @@
 
 use super::bounds::bounds;
 use super::columns::Term;
+use crate::memory::filled;
 use crate::simd::{Aligned, Lanes, WIDTH};
 use crate::tree::Region;
 
@@ -25,8 +26,18 @@ impl Rows {
         self.columns = columns;
         self.ids.clear();
         self.affine.clear();
-        // Room, which costs nothing until it is used, so that nothing is ever moved.
-        self.matrix.reserve_exact((columns * panels).saturating_sub(self.matrix.len()));
+        // Room, which costs nothing until it is used, so that nothing is ever moved; more than is needed, so that the next node
+        // finds it too.
+        let room = (columns * panels).next_power_of_two();
+        if self.matrix.capacity() < room {
+            self.matrix = Vec::with_capacity(room);
+        }
+    }
+
+    /// Has the weights of each panel, whose affine parts are there, written by `write(panel, weights)`.
+    pub(super) fn fill_panels(&mut self, write: impl Fn(usize, &mut [Aligned]) + Sync + Send) {
+        let (memory, columns) = (std::mem::take(&mut self.matrix), self.columns);
+        self.matrix = filled(memory, columns * self.panels(), Aligned::ZERO, columns, write);
     }
 
     pub(super) fn panels(&self) -> usize {
