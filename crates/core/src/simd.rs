@@ -123,6 +123,25 @@ mod tests {
     }
     multiversion! { fn permuted(a: &[f32; WIDTH], places: &[u32; WIDTH]) -> [f32; WIDTH] = permuted_body }
 
+    #[inline(always)]
+    fn first_body<L: Lanes>(a: &[f32; WIDTH], to: &mut [f32]) {
+        L::load(a).store_first(to);
+    }
+    multiversion! { fn first(a: &[f32; WIDTH], to: &mut [f32]) = first_body }
+
+    #[test]
+    fn the_first_lanes_are_stored_and_nothing_beyond_them() {
+        let a = std::array::from_fn(|i| i as f32 + 1.0);
+        for simd in [Simd::Portable, Simd::Avx2, Simd::Avx512].into_iter().filter(|s| *s <= Simd::best()) {
+            for room in 0..20 {
+                let mut to = [0.0; 20];
+                first(simd, &a, &mut to[..room]);
+                let expected = std::array::from_fn(|i| if i < room.min(WIDTH) { a[i] } else { 0.0 });
+                assert_eq!(to, expected, "{simd:?}, room for {room}");
+            }
+        }
+    }
+
     #[test]
     fn every_instruction_set_of_this_machine_gives_the_same_answers() {
         let a = std::array::from_fn(|i| (i as f32 * 0.7).sin());

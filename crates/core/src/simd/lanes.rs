@@ -24,6 +24,12 @@ pub(crate) trait Lanes: Copy {
     fn splat(value: f32) -> Self;
     fn load(from: &[f32; WIDTH]) -> Self;
     fn store(self) -> [f32; WIDTH];
+    /// Writes the first lanes, as many as there is room for.
+    #[inline(always)]
+    fn store_first(self, to: &mut [f32]) {
+        let count = to.len().min(WIDTH);
+        to[..count].copy_from_slice(&self.store()[..count]);
+    }
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
@@ -274,6 +280,12 @@ mod x86 {
             // SAFETY: as above; 16 numbers may be written.
             unsafe { _mm512_storeu_ps(to.as_mut_ptr(), self.0) };
             to
+        }
+        #[inline(always)]
+        fn store_first(self, to: &mut [f32]) {
+            let mask = ((1u32 << to.len().min(WIDTH)) - 1) as __mmask16;
+            // SAFETY: as above; where the mask is set there is room.
+            unsafe { _mm512_mask_storeu_ps(to.as_mut_ptr(), mask, self.0) }
         }
         #[inline(always)]
         fn abs(self) -> Self {

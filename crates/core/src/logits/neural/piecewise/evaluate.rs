@@ -200,18 +200,12 @@ impl Walk<'_> {
         let rows = self.order.rows(self.tree, first..(first + LEAF).min(self.tree.len()));
         // They may be anywhere in memory: they are on their way while the first points are evaluated.
         rows.clone().for_each(|row| self.logits.prefetch(row));
-        let blocks = &self.tree.blocks()[node.first * LEAF_BLOCKS..];
-        let mut rows = rows;
-        for x in blocks.iter().take(LEAF_BLOCKS) {
-            leaf::evaluate(self.simd, part, &self.whole.heads, x, activations);
-            for (lane, row) in rows.by_ref().take(WIDTH).enumerate() {
-                // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
-                let row = unsafe { self.logits.row(row) };
-                for (logit, output) in row.iter_mut().zip(&activations.outputs) {
-                    *logit = output.0[lane];
-                }
-            }
-        }
+        // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
+        let mut rows = rows.map(|row| unsafe { self.logits.row(row) });
+        let mut logits: [&mut [f32]; LEAF] = std::array::from_fn(|_| rows.next().unwrap_or_default());
+        let count = LEAF.min(self.tree.len() - first);
+        let blocks = &self.tree.blocks()[node.first * LEAF_BLOCKS..][..count.div_ceil(WIDTH)];
+        leaf::evaluate(self.simd, part, &self.whole.heads, blocks, activations, &mut logits[..count]);
     }
 
     fn dense(&self, node: Node) {
