@@ -9,6 +9,7 @@
 //! | [`softmax`] | logits at a temperature -> weights, and the form of them that stays accurate however small T is |
 //! | [`mls`] | weights and moved control points -> a rigid, similarity or affine map a point |
 //! | [`tree`] | a kd-tree over points, built once a shape |
+//! | [`memory`] | large arrays, made by all threads |
 //! | `simd` | one kernel, compiled for several instruction sets |
 //! | [`deformer`] | joins them: points bound to their logits once, deformed many times |
 //!
@@ -21,7 +22,7 @@ pub mod deformer;
 mod error;
 pub mod frame;
 pub mod logits;
-mod memory;
+pub mod memory;
 pub mod mls;
 mod parallel;
 pub mod progress;

@@ -60,6 +60,14 @@ pub(crate) fn filled<T: Copy + Send + Sync>(
     old
 }
 
+/// A copy, made by all threads.
+pub fn copy_of<T: Copy + Default + Send + Sync>(numbers: &[T]) -> Vec<T> {
+    const BLOCK: usize = 1 << 16;
+    filled(Vec::new(), numbers.len(), T::default(), BLOCK, |index, block| {
+        block.copy_from_slice(&numbers[BLOCK * index..][..block.len()]);
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::logits::neural::{dense, network::Network};
 use crate::parallel::{for_each_block, for_each_task, threads, SharedRows};
 use crate::progress::Progress;
-use crate::simd::{Simd, WIDTH};
+use crate::simd::{Aligned, Simd, WIDTH};
 use crate::tree::{Node, Order, PointTree, LEAF, LEAF_BLOCKS};
 
 /// Nodes of this depth are made from the whole network.
@@ -204,8 +204,12 @@ impl Walk<'_> {
         let mut rows = rows.map(|row| unsafe { self.logits.row(row) });
         let mut logits: [&mut [f32]; LEAF] = std::array::from_fn(|_| rows.next().unwrap_or_default());
         let count = LEAF.min(self.tree.len() - first);
-        let blocks = &self.tree.blocks()[node.first * LEAF_BLOCKS..][..count.div_ceil(WIDTH)];
-        leaf::evaluate(self.simd, part, &self.whole.heads, blocks, activations, &mut logits[..count]);
+        let mut x = [[Aligned::ZERO; 3]; LEAF_BLOCKS];
+        let x = &mut x[..count.div_ceil(WIDTH)];
+        for (block, x) in x.iter_mut().enumerate() {
+            *x = self.tree.block(first + WIDTH * block);
+        }
+        leaf::evaluate(self.simd, part, &self.whole.heads, x, activations, &mut logits[..count]);
     }
 
     fn dense(&self, node: Node) {

@@ -22,7 +22,6 @@ pub(super) struct Part {
 
 /// `U`: for each row of layer 2 what it adds to all outputs, in lanes.
 pub(super) struct Heads {
-    pub outputs: usize,
     /// Registers that hold all outputs.
     pub groups: usize,
     pub weights: Vec<Aligned>,

@@ -171,7 +171,7 @@ fn logits_in_the_order_of_the_tree_are_the_same_ones() {
     let mut ordered = vec![f32::NAN; 3000 * 6];
     network.write_logits_of_tree(&tree, Order::Tree, &mut ordered, &mut |_| true).unwrap();
     for (row, index) in ordered.chunks(6).zip(tree.order()) {
-        assert_eq!(row, &given[6 * *index as usize..][..6]);
+        assert_eq!(row, &given[6 * index..][..6]);
     }
 }
 

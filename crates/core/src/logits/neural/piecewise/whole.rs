@@ -83,7 +83,7 @@ impl Whole {
             }
         }
         let part = Part { columns, output, ..Part::default() };
-        let mut whole = Whole { part, heads: Heads { outputs, groups, weights } };
+        let mut whole = Whole { part, heads: Heads { groups, weights } };
         if size_of_val(&layer2.weight[..]) <= MOST_KEPT {
             let mut packed = Rows::default();
             pack(network, 0, rows.div_ceil(WIDTH), &mut packed);
