@@ -124,6 +124,12 @@ mod tests {
     multiversion! { fn permuted(a: &[f32; WIDTH], places: &[u32; WIDTH]) -> [f32; WIDTH] = permuted_body }
 
     #[inline(always)]
+    fn smaller_body<L: Lanes>(a: &[f32; WIDTH], b: &[f32; WIDTH]) -> u32 {
+        L::bits(L::load(a).less(L::load(b)))
+    }
+    multiversion! { fn smaller(a: &[f32; WIDTH], b: &[f32; WIDTH]) -> u32 = smaller_body }
+
+    #[inline(always)]
     fn first_body<L: Lanes>(a: &[f32; WIDTH], to: &mut [f32]) {
         L::load(a).store_first(to);
     }
@@ -166,6 +172,10 @@ mod tests {
                 }
             }
             let places = std::array::from_fn(|i| ((5 * i + 3) % WIDTH) as u32);
+            let bits = smaller(simd, &a, &b.map(|b| b - 2.0));
+            for i in 0..WIDTH {
+                assert_eq!(bits >> i & 1 == 1, a[i] < b[i] - 2.0, "{simd:?}, lane {i}");
+            }
             assert_eq!(permuted(simd, &a, &places), places.map(|i| a[i as usize]), "{simd:?}");
             assert!((results[9][0] - a.iter().sum::<f32>()).abs() < 1e-5, "{simd:?}");
         }

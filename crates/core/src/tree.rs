@@ -304,7 +304,8 @@ mod tests {
             let region = tree.region(node);
             for place in node.first * LEAF..((node.first + node.count) * LEAF).min(n) {
                 for k in 0..dim {
-                    let coordinate = tree.blocks[place / WIDTH][k].0[place % WIDTH];
+                    let coordinate = tree.point(place)[k];
+                    assert_eq!(coordinate, tree.block(place - place % WIDTH)[k].0[place % WIDTH]);
                     assert_eq!(coordinate, x[dim * tree.index(place) + k] as f32);
                     let distance = f64::from(coordinate) - f64::from(region.centre[k]);
                     assert!(distance.abs() <= f64::from(region.half[k]), "{distance} {region:?}");

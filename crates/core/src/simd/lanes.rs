@@ -45,6 +45,8 @@ pub(crate) trait Lanes: Copy {
     fn permute(self, places: Self::Places) -> Self;
     /// The lanes where `self < other`.
     fn less(self, other: Self) -> Self::Mask;
+    /// The lanes of the mask as bits, the first lane in the lowest.
+    fn bits(mask: Self::Mask) -> u32;
     /// `yes` in the lanes of the mask, `no` in the others.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
@@ -132,6 +134,10 @@ impl Lanes for Portable {
     #[inline(always)]
     fn less(self, other: Self) -> Self::Mask {
         std::array::from_fn(|l| self.0[l] < other.0[l])
+    }
+    #[inline(always)]
+    fn bits(mask: Self::Mask) -> u32 {
+        mask.iter().rev().fold(0, |bits, lane| 2 * bits + u32::from(*lane))
     }
     #[inline(always)]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
@@ -244,6 +250,11 @@ mod x86 {
             }
         }
         #[inline(always)]
+        fn bits(mask: Self::Mask) -> u32 {
+            // SAFETY: as above.
+            unsafe { (_mm256_movemask_ps(mask.0) | _mm256_movemask_ps(mask.1) << 8) as u32 }
+        }
+        #[inline(always)]
         fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
             // SAFETY: as above.
             unsafe { Avx2(_mm256_blendv_ps(no.0, yes.0, mask.0), _mm256_blendv_ps(no.1, yes.1, mask.1)) }
@@ -306,6 +317,10 @@ mod x86 {
         fn less(self, other: Self) -> Self::Mask {
             // SAFETY: as above.
             unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn bits(mask: Self::Mask) -> u32 {
+            u32::from(mask)
         }
         #[inline(always)]
         fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {

@@ -1,9 +1,9 @@
 //! Layer 2 over a box: its rows' affine parts, and bounds on what they can be.
 
-use super::bounds::bounds;
+use super::bounds::{bounds, classify};
 use super::columns::Term;
 use crate::memory::filled;
-use crate::simd::{Aligned, Lanes, WIDTH};
+use crate::simd::{Aligned, Lanes};
 use crate::tree::Region;
 
 /// Rows of layer 2, in panels of 16.
@@ -71,8 +71,9 @@ impl Rows {
 pub(super) struct Bounded<const P: usize> {
     /// The affine parts of their rows, with the columns that are on.
     pub affine: [[Aligned; 4]; P],
-    pub lower: [[f32; WIDTH]; P],
-    pub upper: [[f32; WIDTH]; P],
+    /// Which of their rows are on, and which open.
+    pub on: [u32; P],
+    pub open: [u32; P],
 }
 
 /// Folds the columns that are on into the affine parts of `P` panels, and bounds their rows over the box.
@@ -97,8 +98,7 @@ pub(super) fn bound<L: Lanes, const P: usize>(
             }
         }
     }
-    let mut result =
-        Bounded { affine: [[Aligned::ZERO; 4]; P], lower: [[0.0; WIDTH]; P], upper: [[0.0; WIDTH]; P] };
+    let mut result = Bounded { affine: [[Aligned::ZERO; 4]; P], on: [0; P], open: [0; P] };
     for p in 0..P {
         for k in 0..4 {
             result.affine[p][k] = Aligned(maps[p][k].store());
@@ -118,7 +118,7 @@ pub(super) fn bound<L: Lanes, const P: usize>(
     }
     for p in 0..P {
         let (lower, upper) = bounds(maps[p], spreads[p], region);
-        (result.lower[p], result.upper[p]) = (lower.store(), upper.store());
+        [result.on[p], result.open[p]] = classify(lower, upper);
     }
     result
 }
