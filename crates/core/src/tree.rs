@@ -159,9 +159,9 @@ impl PointTree {
             None => &std::array::from_fn(|lane| points[lane.min(points.len() - 1)]),
         };
         let mut block = [Aligned::ZERO; 3];
-        for lane in 0..WIDTH {
-            for k in 0..3 {
-                block[k].0[lane] = points[lane][k];
+        for (lane, point) in points.iter().enumerate() {
+            for (coordinates, x) in block.iter_mut().zip(point) {
+                coordinates.0[lane] = *x;
             }
         }
         block
