@@ -1,0 +1,126 @@
+"""Making the study: every deformation with every method that applies, drawn, in one page that needs nothing else."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from neuralmls.errors import ArgumentError, NotApplicable
+from neuralmls.experiments.study.cases import Case
+from neuralmls.experiments.study.key import Question, sealed
+from neuralmls.experiments.study.pictures import pictures
+from neuralmls.shape import Shape
+
+WIDTH = 800  # pixels of a picture: twice what it takes on a page of 1280 x 720
+# Where the camera stands for each category: degrees from the front to the left, and above the ground.
+VIEWS = {"chair": (34.0, 18.0), "airplane": (38.0, 32.0), "car": (36.0, 16.0)}
+DEFAULT_VIEW = (34.0, 18.0)
+
+Method = Callable[[Shape, ArrayLike, ArrayLike], NDArray[np.float64]]
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study that is ready to be given to participants.
+
+    Attributes
+    ----------
+    id : str
+        What its answers name it by.
+    page : str
+        The HTML page, with everything in it.
+    questions : list of Question
+        What is asked, which methods are shown, and why others are not.
+    """
+
+    id: str
+    page: str
+    questions: list[Question]
+
+
+def build(
+    cases: Iterable[Case],
+    methods: Mapping[str, Method],
+    *,
+    width: int = WIDTH,
+    seed: int = 0,
+    progress: Callable[[int], None] | None = None,
+) -> Study:
+    """Deform each case with each method, draw the results, and put the page together.
+
+    Parameters
+    ----------
+    cases : iterable of Case
+        A question each.
+    methods : dict
+        `method(shape, p, q) -> (n, 3)` by name; one that raises `NotApplicable` is left out of that question.
+    width : int, pixels of a picture
+    seed : int
+        Of the order of the results in the page's file. Participants see them in orders of their own.
+    progress : callable, optional
+        Told how many cases are done.
+
+    Raises
+    ------
+    ArgumentError
+        There is no case, or fewer than two methods apply to one.
+    NeuralMLSError
+        PyVista is not installed, or cannot draw on this machine.
+    """
+    draw = np.random.default_rng(seed)
+    questions: list[Question] = []
+    shown = []
+    for number, case in enumerate(cases, 1):
+        results, left_out = _results(case, methods)
+        names = tuple(np.array(list(results))[draw.permutation(len(results))].tolist())
+        azimuth, elevation = VIEWS.get(case.category, DEFAULT_VIEW)
+        source, *drawn = pictures(
+            case.shape,
+            case.control_points,
+            [results[name] for name in names],
+            width=width,
+            azimuth=azimuth,
+            elevation=elevation,
+        )
+        question = Question(f"q{number}", case.category, case.name, case.displacement, case.origin, names, left_out)
+        questions.append(question)
+        shown.append({"id": question.id, "source": source, "results": drawn})
+        if progress is not None:
+            progress(number)
+    if not questions:
+        raise ArgumentError("cases: expected at least one deformation, found none")
+    digest = hashlib.sha256(json.dumps(shown).encode()).hexdigest()
+    study, key = sealed(questions, digest)
+    return Study(study, page({"id": study, "key": key, "questions": shown}), questions)
+
+
+def _results(case: Case, methods: Mapping[str, Method]) -> tuple[dict[str, NDArray[np.float64]], dict[str, str]]:
+    """The results of the methods that apply, and why the others do not."""
+    results, left_out = {}, {}
+    for name, method in methods.items():
+        try:
+            results[name] = method(case.shape, case.control_points.sources, case.control_points.targets)
+        except NotApplicable as refusal:
+            left_out[name] = str(refusal)
+    if len(results) < 2:
+        raise ArgumentError(
+            f"{case.name}, {case.displacement}: expected at least two methods that apply to it, found {list(results)}"
+        )
+    return results, left_out
+
+
+def page(content: Mapping[str, object]) -> str:
+    """The page's HTML with its style, its script and the study in it."""
+    folder = files(__package__) / "page"
+    html, style, script = ((folder / f"study.{ending}").read_text("utf-8") for ending in ("html", "css", "js"))
+    data = json.dumps(content).replace("<", "\\u003c")  # no text in it can end the script element
+    for name, text in (("style", style), ("script", script), ("study", data)):
+        before, after = html.split("{{" + name + "}}")
+        html = before + text.strip() + after
+    return html
