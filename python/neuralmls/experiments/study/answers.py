@@ -39,8 +39,8 @@ def read_answers(paths: Sequence[str | os.PathLike[str]]) -> Answers:
     Raises
     ------
     FileError
-        A file is missing, holds no answers, answers to another study than the first one, or a participant's who is there
-        already; it was changed, or answers nothing.
+        A file is missing, is no file of answers or a changed one; it answers nothing, or another study than the first
+        one does; its participant is there already.
     """
     if not paths:
         raise FileError("expected at least one file of answers, found none")

@@ -9,20 +9,18 @@ from dataclasses import dataclass
 from importlib.resources import files
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from neuralmls.errors import ArgumentError, NotApplicable
+from neuralmls.experiments.methods import METHODS, Method
 from neuralmls.experiments.study.cases import Case
 from neuralmls.experiments.study.key import Question, sealed
 from neuralmls.experiments.study.pictures import pictures
-from neuralmls.shape import Shape
 
-WIDTH = 800  # pixels of a picture: twice what it takes on a page of 1280 x 720
+HEIGHT = 600  # pixels of a picture: twice what it takes on a page of 1280 x 720
 # Where the camera stands for each category: degrees from the front to the left, and above the ground.
 VIEWS = {"chair": (34.0, 18.0), "airplane": (38.0, 32.0), "car": (36.0, 16.0)}
 DEFAULT_VIEW = (34.0, 18.0)
-
-Method = Callable[[Shape, ArrayLike, ArrayLike], NDArray[np.float64]]
 
 
 @dataclass(frozen=True)
@@ -46,9 +44,10 @@ class Study:
 
 def build(
     cases: Iterable[Case],
-    methods: Mapping[str, Method],
     *,
-    width: int = WIDTH,
+    kpd: Mapping[str, Method] | None = None,
+    methods: Mapping[str, Method] = METHODS,
+    height: int = HEIGHT,
     seed: int = 0,
     progress: Callable[[int], None] | None = None,
 ) -> Study:
@@ -58,9 +57,11 @@ def build(
     ----------
     cases : iterable of Case
         A question each.
+    kpd : dict, optional
+        KeypointDeformer by the category that its network is for.
     methods : dict
-        `method(shape, p, q) -> (n, 3)` by name; one that raises `NotApplicable` is left out of that question.
-    width : int, pixels of a picture
+        The other methods by name. One that does not apply to a shape is left out of its questions.
+    height : int, pixels of a picture
     seed : int
         Of the order of the results in the page's file. Participants see them in orders of their own.
     progress : callable, optional
@@ -71,20 +72,20 @@ def build(
     ArgumentError
         There is no case, or fewer than two methods apply to one.
     NeuralMLSError
-        PyVista is not installed, or cannot draw on this machine.
+        An extra that is needed is not installed, or this machine cannot draw.
     """
     draw = np.random.default_rng(seed)
     questions: list[Question] = []
     shown = []
     for number, case in enumerate(cases, 1):
-        results, left_out = _results(case, methods)
+        results, left_out = _results(case, methods, (kpd or {}).get(case.category))
         names = tuple(np.array(list(results))[draw.permutation(len(results))].tolist())
         azimuth, elevation = VIEWS.get(case.category, DEFAULT_VIEW)
         source, *drawn = pictures(
             case.shape,
             case.control_points,
             [results[name] for name in names],
-            width=width,
+            height=height,
             azimuth=azimuth,
             elevation=elevation,
         )
@@ -100,9 +101,15 @@ def build(
     return Study(study, page({"id": study, "key": key, "questions": shown}), questions)
 
 
-def _results(case: Case, methods: Mapping[str, Method]) -> tuple[dict[str, NDArray[np.float64]], dict[str, str]]:
+def _results(
+    case: Case, methods: Mapping[str, Method], kpd: Method | None
+) -> tuple[dict[str, NDArray[np.float64]], dict[str, str]]:
     """The results of the methods that apply, and why the others do not."""
     results, left_out = {}, {}
+    if kpd is None:
+        left_out["kpd"] = f"KeypointDeformer has no network for the category {case.category}"
+    else:
+        methods = {**methods, "kpd": kpd}
     for name, method in methods.items():
         try:
             results[name] = method(case.shape, case.control_points.sources, case.control_points.targets)

@@ -25,6 +25,7 @@ PUBLISHED: dict[str, tuple[str, ...]] = {
 }
 SHAPES = 3  # of each category
 DISPLACEMENTS = 3  # of each shape
+COUNT = len(CATEGORIES) * SHAPES * DISPLACEMENTS
 
 
 @dataclass(frozen=True)

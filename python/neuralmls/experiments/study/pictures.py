@@ -17,8 +17,8 @@ from neuralmls.shape import Shape
 
 Array = NDArray[np.float64]
 
-ASPECT = 4 / 3  # width by height: fills the page's frames
-QUALITY = 82  # of WebP, 0 to 100
+ASPECTS = (0.9, 4 / 3)  # the least and the greatest width by height: what fits the page's frames
+QUALITY = 90  # of WebP, 0 to 100
 FRONT = 90.0  # degrees: shapes of the study face +x
 # How far beyond source and targets the camera still follows a result, in longest sides of theirs. What flies farther is
 # cut off: it must not shrink the others.
@@ -30,7 +30,7 @@ def pictures(
     control_points: ControlPoints,
     results: Sequence[Array],
     *,
-    width: int,
+    height: int,
     azimuth: float,
     elevation: float,
 ) -> list[str]:
@@ -38,7 +38,7 @@ def pictures(
 
     Parameters
     ----------
-    width : int, pixels
+    height : int, pixels
     azimuth, elevation : float, degrees
         Where the camera stands: turned from the shape's front (+x) to its left, risen from the ground.
 
@@ -53,26 +53,25 @@ def pictures(
     low, high = known.min(axis=0), known.max(axis=0)
     origin, size = (low + high) / 2, float((high - low).max())
     seen = np.concatenate([known, *(np.clip(y, low - FOLLOWED * size, high + FOLLOWED * size) for y in results)])
-    camera = fitted(
-        (seen - origin) / size, azimuth=FRONT + azimuth, elevation=elevation, up="y", aspects=(ASPECT, ASPECT)
-    )
+    camera = fitted((seen - origin) / size, azimuth=FRONT + azimuth, elevation=elevation, up="y", aspects=ASPECTS)
     faces = np.asarray(shape.faces, dtype=np.int64)
     colours = np.broadcast_to((np.array(CLAY) * 255).round().astype(np.uint8), (len(x), 3))
+    size_shown = round(height * camera.aspect), height
     drawn = []
     for number, positions in enumerate([x, *results]):
-        stage = Stage(pyvista, width, round(width / ASPECT), camera)
+        stage = Stage(pyvista, *size_shown, camera)
         stage.surface((positions - origin) / size, faces, colours)
         if number == 0:
             stage.balls((p - origin) / size, SOURCE)
             stage.arrows((p - origin) / size, (q - origin) / size, TARGET)
-        drawn.append(_uri(stage.picture(), width))
+        drawn.append(_uri(stage.picture(), size_shown))
     return drawn
 
 
-def _uri(picture: NDArray[np.uint8], width: int) -> str:
+def _uri(picture: NDArray[np.uint8], size: tuple[int, int]) -> str:
     from PIL import Image
 
-    small = Image.fromarray(picture).resize((width, round(width / ASPECT)), Image.Resampling.LANCZOS)
+    small = Image.fromarray(picture).resize(size, Image.Resampling.LANCZOS)
     out = io.BytesIO()
     small.save(out, "WEBP", quality=QUALITY, method=6)
     return "data:image/webp;base64," + base64.b64encode(out.getvalue()).decode()

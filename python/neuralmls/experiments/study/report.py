@@ -109,7 +109,7 @@ def interval(counts: ArrayLike, confidence: float = CONFIDENCE) -> tuple[float, 
     Examples
     --------
     >>> [round(bound, 3) for bound in interval([(6, 9), (3, 9), (7, 9)])]    # 16 of 27, by three participants
-    [0.347, 0.8]
+    [0.34, 0.804]
     """
     table = np.asarray(counts, dtype=np.float64)
     if table.ndim != 2 or table.shape[1] != 2 or (table < 0).any() or (table[:, 0] > table[:, 1]).any():

@@ -1,4 +1,4 @@
-"""Shapes of the study that the package makes itself: its samples in three proportions, with three displacements each."""
+"""Shapes of the study that the package makes itself: samples in three proportions, with three displacements each."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ class Variant:
     sample : str
         What it is made of: "chair", "airplane" or "car".
     knots : dict
-        For a coordinate (0, 1, 2: x, y, z), where some of its values go, in metres; linear in between. So that wheels stay
-        round and legs straight, only what lies between them is stretched.
+        For a coordinate (0, 1, 2: x, y, z), where some of its values go, in metres; linear in between. Only what lies
+        between wheels or legs is stretched, so that these keep their form.
     """
 
     name: str
@@ -145,7 +145,8 @@ def made(variant: Variant) -> tuple[Shape, dict[str, ControlPoints]]:
 def _stretched(points: Array, knots: dict[int, Knots]) -> Array:
     out = points.copy()
     for axis, pairs in knots.items():
-        out[:, axis] = np.interp(points[:, axis], *zip(*pairs, strict=True))
+        at, to = np.array(pairs, dtype=np.float64).T
+        out[:, axis] = np.interp(points[:, axis], at, to)
     return out
 
 
