@@ -22,7 +22,7 @@ QUALITY = 90  # of WebP, 0 to 100
 FRONT = 90.0  # degrees: shapes of the study face +x
 # How far beyond source and targets the camera still follows a result, in longest sides of theirs. What flies farther is
 # cut off: it must not shrink the others.
-FOLLOWED = 0.15
+FOLLOWED = 0.3
 
 
 def pictures(

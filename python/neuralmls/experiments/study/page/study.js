@@ -140,10 +140,8 @@ function showQuestion() {
   one("#number").textContent = `Question ${at + 1} of ${sequence.length}`;
   one("#source img").src = question.source;
   const count = question.order.length;
-  const results = one("#results");
-  results.dataset.rows = count > 2 ? 2 : 1;
-  results.dataset.columns = count > 4 ? 3 : 2;
-  results.replaceChildren(...question.order.map((result, place) => resultButton(question, result, place, count)));
+  one("#stage").dataset.count = count;
+  one("#results").replaceChildren(...question.order.map((result, place) => resultButton(question, result, place, count)));
   one("#back").disabled = at === 0;
   showChoice();
 }
