@@ -33,7 +33,7 @@ def poses(
         Path, typer.Argument(metavar="FOLDER", help="Of .npz files with rest (n, 3), poses (k, n, 3), faces (f, 3).")
     ],
     methods: Annotated[
-        str | None, typer.Option(metavar="NAME,...", help="rbf,classic,neural,arap,biharmonic if not given.")
+        str | None, typer.Option(metavar="NAME,...", help="rbf,classic,neural,arap if not given; also biharmonic.")
     ] = None,
     counts: Annotated[str, typer.Option(metavar="M,...", help="Numbers of control points.")] = "12,40",
     json: Annotated[bool, typer.Option("--json", help="The table as JSON, for machines.")] = False,
@@ -45,9 +45,9 @@ def poses(
     the other vertices from where they are? The mean over vertices and up to six poses of a
     file, in % of the diagonal of the box at rest.
     """
-    from neuralmls.experiments.poses import POSE_METHODS
+    from neuralmls.experiments.poses import POSE_METHODS, QUICK
 
-    chosen = _names(methods, list(POSE_METHODS))
+    chosen = list(QUICK) if methods is None else _names(methods, list(POSE_METHODS))
     numbers = _numbers(counts)
     if not folder.is_dir():
         raise FileError(f"{folder}: expected a folder of .npz files")
@@ -121,8 +121,8 @@ def _show(rows: list[dict[str, Any]], names: list[str]) -> None:
             console.line(f"  {POSE_METHODS[name].title} does not apply to {where}: {reason}")
 
 
-def _names(text: str | None, known: list[str]) -> list[str]:
-    names = known if text is None else text.split(",")
+def _names(text: str, known: list[str]) -> list[str]:
+    names = text.split(",")
     for name in names:
         if name not in known:
             raise ArgumentError(f"--methods: expected names out of {', '.join(known)}, found '{name}'")

@@ -58,7 +58,7 @@ def compare(
 
     from neuralmls.cli import comparison, deformation
     from neuralmls.control_points import ControlPoints
-    from neuralmls.experiments.compare import attempt
+    from neuralmls.experiments.compare import attempt, load_libraries
     from neuralmls.experiments.methods import kpd as kpd_method
     from neuralmls.shape import read
 
@@ -71,6 +71,7 @@ def compare(
         raise ControlPointError(f"{points}: no control point is moved, so that there is nothing to compare")
     for sentence in warnings:
         console.warning(sentence)
+    load_libraries()
     results: dict[str, Result] = {}
     for name, method in methods.items():
         with stages.stage(name):

@@ -34,7 +34,7 @@ def document(shape: Shape, results: dict[str, Result]) -> dict[str, Any]:
 
 def write_csv(path: Path, methods: list[dict[str, Any]]) -> None:
     """Write a row a method and a column a figure, empty where there is none."""
-    rows = [_flat(method) for method in methods]
+    rows = [_flat({**method, **(method["measures"] or {}), "measures": {}}) for method in methods]
     names = dict.fromkeys(name for row in rows for name in row)
     out = io.StringIO()
     writer = csv.DictWriter(out, list(names), lineterminator="\n")
@@ -44,7 +44,7 @@ def write_csv(path: Path, methods: list[dict[str, Any]]) -> None:
 
 
 def draw_scatter(path: Path, results: dict[str, Result]) -> None:
-    """Draw distortion, or what strain there is where a shape has no faces, against control-point error."""
+    """Draw each method's distortion against its control-point error."""
     from neuralmls.figures.scatter import scatter
 
     points = {
@@ -84,9 +84,10 @@ def show(told: dict[str, Any], file: TextIO) -> None:
         console.table([*head, "flipped"], [_distortion(method) for method in surfaces], range(1, 10), file)
         for sentence in _left_out(surfaces[0]["measures"], told):
             console.line(f"  {sentence}", file)
-    for method in told["methods"]:
-        if method["not_applicable"] is not None:
-            console.line(f"  {method['title']} does not apply: {method['not_applicable']}", file)
+    reasons = [(m["title"], m["not_applicable"]) for m in told["methods"] if m["not_applicable"] is not None]
+    if reasons:
+        print("\nwhat does not apply", file=file)
+        console.pairs(reasons, file)
     for name in told["files"]:
         console.line(f"  wrote {name}", file)
 
@@ -123,11 +124,10 @@ def _left_out(measures: dict[str, Any], told: dict[str, Any]) -> list[str]:
 
 
 def _flat(content: dict[str, Any], before: str = "") -> dict[str, Any]:
-    """The values of nested documents under joined names."""
+    """The values of nested documents, under joined names."""
     flat: dict[str, Any] = {}
     for name, value in content.items():
-        flat |= _flat(value, f"{name}_") if isinstance(value, dict) else {f"{before}{name}": value}
-    flat.pop("measures", None)
+        flat |= _flat(value, f"{before}{name}_") if isinstance(value, dict) else {f"{before}{name}": value}
     return flat
 
 
