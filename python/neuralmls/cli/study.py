@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
+import click
 
-from neuralmls.cli import console, outputs
+from neuralmls.cli import console, options, outputs
 from neuralmls.cli.stages import Stages
 from neuralmls.errors import ArgumentError, FileError
 
@@ -21,30 +21,26 @@ if TYPE_CHECKING:
 PAGE = "study.html"
 FEW = 10  # participants: with fewer, the intervals were seen to be too narrow
 
-study = typer.Typer(
-    name="study",
-    help="Ask people which method's result looks best, as the paper did.",
-    no_args_is_help=True,
-    rich_markup_mode=None,
-)
+
+@click.group()
+def study() -> None:
+    """Ask people which method's result looks best, as the paper did."""
 
 
 @study.command()
-def build(
-    output: Annotated[Path, typer.Option("--output", "-o", metavar="DIR", help="The folder to write into.")],
-    kpd: Annotated[
-        list[str] | None,
-        typer.Option(metavar="CATEGORY=FILE", help="KeypointDeformer's .safetensors for airplane, car or chair."),
-    ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Overwrite a page that is there.")] = False,
-) -> None:
+@options.output("The folder to write into.")
+@click.option(
+    "--kpd", multiple=True, metavar="CATEGORY=FILE", help="KeypointDeformer's .safetensors for airplane, car or chair."
+)
+@options.quiet
+@options.force
+def build(*, output: Path, kpd: tuple[str, ...], quiet: bool, force: bool) -> None:
     """Make the study's page: 27 deformations by each method, in one HTML file.
 
     The page works offline and by keyboard; participants save a file of answers for study report.
     The paper's shapes are used where the folder $NEURALMLS_DATA has them, others otherwise.
     """
-    networks = _networks(kpd or [])
+    networks = _networks(kpd)
     data = os.environ.get("NEURALMLS_DATA")
     if data is not None and not Path(data).is_dir():
         raise FileError(f"$NEURALMLS_DATA: there is no folder '{data}'")
@@ -66,7 +62,7 @@ def build(
         _show_study(made, page, stages.seconds["study"])
 
 
-def _networks(given: list[str]) -> dict[str, Path]:
+def _networks(given: tuple[str, ...]) -> dict[str, Path]:
     """KeypointDeformer's files by category."""
     from neuralmls.experiments.study.cases import CATEGORIES
 
@@ -104,10 +100,9 @@ def _listed(names: tuple[str, ...]) -> str:
 
 
 @study.command()
-def report(
-    files: Annotated[list[Path], typer.Argument(metavar="FILES...", help="What participants saved, a file each.")],
-    json: Annotated[bool, typer.Option("--json", help="The table as JSON, for machines.")] = False,
-) -> None:
+@click.argument("files", nargs=-1, required=True, type=options.PATH)
+@options.json
+def report(*, files: tuple[Path, ...], json: bool) -> None:
     """Count a study's answers: the paper's Table 2.
 
     How often each method was chosen where it was shown, for each category and overall. Intervals
