@@ -20,7 +20,6 @@ from neuralmls.cli.inspect import inspect
 from neuralmls.cli.points import points
 from neuralmls.cli.render import render
 from neuralmls.cli.sample import sample
-from neuralmls.cli.study import study
 from neuralmls.errors import ArgumentError, NeuralMLSError
 
 BAD_DATA, WRONG_USE, INTERRUPTED = 1, 2, 130
@@ -39,7 +38,6 @@ app = typer.Typer(
 for command in (deform, inspect, points, render, compare, sample, demo, convert_kpd):
     app.command()(command)
 app.add_typer(benchmark)
-app.add_typer(study)
 
 
 def _version(asked: bool) -> None:

@@ -22,7 +22,7 @@ PAGE = "study.html"
 FEW = 10  # participants: with fewer, the intervals were seen to be too narrow
 
 
-@click.group()
+@click.group(no_args_is_help=False)
 def study() -> None:
     """Ask people which method's result looks best, as the paper did."""
 
@@ -35,9 +35,10 @@ def study() -> None:
 @options.quiet
 @options.force
 def build(*, output: Path, kpd: tuple[str, ...], quiet: bool, force: bool) -> None:
-    """Make the study's page: 27 deformations by each method, in one HTML file.
+    """Make the study's page.
 
-    The page works offline and by keyboard; participants save a file of answers for study report.
+    It shows 27 deformations by each method, in one HTML file that works offline and by keyboard;
+    participants save a file of answers for study report.
     The paper's shapes are used where the folder $NEURALMLS_DATA has them, others otherwise.
     """
     networks = _networks(kpd)
@@ -103,9 +104,9 @@ def _listed(names: tuple[str, ...]) -> str:
 @click.argument("files", nargs=-1, required=True, type=options.PATH)
 @options.json
 def report(*, files: tuple[Path, ...], json: bool) -> None:
-    """Count a study's answers: the paper's Table 2.
+    """Count a study's answers.
 
-    How often each method was chosen where it was shown, for each category and overall. Intervals
+    The paper's Table 2: how often each method was chosen where it was shown, for each category and overall. Intervals
     are Wilson's at 95 %, widened by how much participants differ: one person's answers resemble
     each other.
     """
