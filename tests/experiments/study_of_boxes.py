@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -47,5 +49,12 @@ def cases_of_boxes(folder: Path) -> list[Case]:
     return found
 
 
-def study_of_boxes(folder: Path) -> Study:
-    return build(cases_of_boxes(folder), methods=METHODS_OF_BOXES, height=60)
+def make_study_of_boxes() -> Study:
+    with TemporaryDirectory() as folder:
+        return build(cases_of_boxes(Path(folder)), methods=METHODS_OF_BOXES, height=60)
+
+
+@cache
+def study_of_boxes() -> Study:
+    """The study, made once for all tests."""
+    return make_study_of_boxes()

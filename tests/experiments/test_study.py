@@ -21,7 +21,7 @@ from neuralmls.experiments.study.cases import CATEGORIES, COUNT, cases
 from neuralmls.experiments.study.key import Question, opened, sealed
 from neuralmls.experiments.study.report import interval, shares
 from neuralmls.experiments.study.variants import VARIANTS, made
-from tests.experiments.study_of_boxes import METHODS_OF_BOXES, cases_of_boxes, study_of_boxes
+from tests.experiments.study_of_boxes import METHODS_OF_BOXES, cases_of_boxes, make_study_of_boxes, study_of_boxes
 
 QUESTIONS = [
     Question("q1", "chair", "stool", "up", "here", ("classic", "neural"), {"kpd": "no network"}),
@@ -43,9 +43,9 @@ def saved(folder: Path, name: str, choices: dict[str, int], **changed: Any) -> P
     return path
 
 
-@pytest.fixture(scope="module")
-def boxes(tmp_path_factory: pytest.TempPathFactory) -> Study:
-    return study_of_boxes(tmp_path_factory.mktemp("boxes"))
+@pytest.fixture
+def boxes() -> Study:
+    return study_of_boxes()
 
 
 # Which deformations
@@ -125,8 +125,8 @@ def test_a_method_that_does_not_apply_is_left_out_of_its_questions_only(boxes):
     assert sorted(car.methods) == ["classic", "neural", "shift"]
 
 
-def test_the_same_study_is_made_again(boxes, tmp_path):
-    assert study_of_boxes(tmp_path).page == boxes.page
+def test_the_same_study_is_made_again(boxes):
+    assert make_study_of_boxes().page == boxes.page
 
 
 def test_a_question_needs_two_methods(tmp_path):

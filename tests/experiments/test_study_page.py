@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,9 @@ pytest.importorskip("pyvista", reason="the extra 'figures' is not installed")
 from playwright.sync_api import Browser, sync_playwright
 
 from neuralmls.cli import main
-from neuralmls.experiments.study.build import Study
+from neuralmls.experiments.methods import METHODS, neural
+from neuralmls.experiments.study.build import Study, build
+from neuralmls.experiments.study.cases import cases
 from tests.experiments.study_of_boxes import METHODS_OF_BOXES, study_of_boxes
 
 OUT = Path(__file__).resolve().parents[2] / "out"
@@ -62,15 +65,24 @@ class Visitor:
         return document
 
 
-@pytest.fixture(scope="module")
-def study(tmp_path_factory: pytest.TempPathFactory) -> Study:
-    return study_of_boxes(tmp_path_factory.mktemp("boxes"))
+@pytest.fixture
+def study() -> Study:
+    return study_of_boxes()
 
 
 @pytest.fixture(scope="module")
-def page_file(study: Study, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def page_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("page") / "study.html"
-    path.write_text(study.page)
+    path.write_text(study_of_boxes().page)
+    return path
+
+
+@pytest.fixture(scope="module")
+def page_of_a_chair(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A page with one question, worth a look."""
+    methods = {"neural": neural(steps=48), "classic": METHODS["classic"], "rbf": METHODS["rbf"]}
+    path = tmp_path_factory.mktemp("chair") / "study.html"
+    path.write_text(build(islice(cases(None), 1), methods=methods, height=400).page)
     return path
 
 
@@ -92,8 +104,8 @@ def visit(browser: Browser, page_file: Path) -> Iterator[Any]:
     """Open the page as a new visitor; afterwards, nobody has asked the network for anything, or met an error."""
     visitors: list[Visitor] = []
 
-    def open_page(**options: Any) -> Visitor:
-        visitors.append(Visitor(browser, page_file, **options))
+    def open_page(file: Path = page_file, **options: Any) -> Visitor:
+        visitors.append(Visitor(browser, file, **options))
         return visitors[-1]
 
     yield open_page
@@ -264,18 +276,41 @@ def test_another_person_on_the_same_device_is_another_participant(visit, tmp_pat
     assert main(["study", "report", str(tmp_path / "first.json"), str(tmp_path / "second.json")]) == 0
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize(("width", "height"), [(1280, 720), (1024, 768), (768, 1024)])
-def test_everything_fits_on_the_screen(visit, scheme, width, height):
-    visitor = visit(seed=1, color_scheme=scheme)
+SIZES = [(1280, 720), (1024, 768), (768, 1024)]
+
+
+def overflow(visitor: Visitor) -> list[int]:
+    """By how much the page is higher and wider than the screen."""
+    root = "document.documentElement"
+    found: list[int] = visitor.page.evaluate(
+        f"() => [{root}.scrollHeight - {root}.clientHeight, {root}.scrollWidth - {root}.clientWidth]"
+    )
+    return found
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_questions_fit_on_the_screen(visit, width, height):
+    visitor = visit(seed=1)
     visitor.page.set_viewport_size({"width": width, "height": height})
-    visitor.press("Enter", "1", "Enter")
+    visitor.press("Enter")
+    for _ in range(4):  # with two and with three results
+        assert overflow(visitor) == [0, 0]
+        for picture in visitor.page.locator("#stage img").all():
+            box = picture.bounding_box()
+            assert min(box["width"], box["height"]) > 150
+            assert box["y"] + box["height"] < height
+        visitor.press("1", "Enter")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_pictures_of_the_page_are_left_to_be_looked_at(visit, page_of_a_chair, scheme, width, height):
+    visitor = visit(page_of_a_chair, seed=1, color_scheme=scheme)
+    visitor.page.set_viewport_size({"width": width, "height": height})
     OUT.mkdir(exist_ok=True)
-    visitor.page.screenshot(path=OUT / f"study-{width}x{height}-{scheme}.png")
-    overflow = "() => [document.documentElement.scrollHeight, document.documentElement.scrollWidth]"
-    assert visitor.page.evaluate(overflow) == [height, width]
-    for picture in visitor.page.locator("#stage img").all():
-        box = picture.bounding_box()
-        assert box["width"] > 150
-        assert box["height"] > 150
-        assert box["y"] + box["height"] < height
+    for screen, keys in (("welcome", []), ("question", ["Enter", "2"]), ("end", ["Enter"])):
+        visitor.press(*keys)
+        assert overflow(visitor) == [0, 0]
+        visitor.page.screenshot(path=OUT / f"study-{screen}-{width}x{height}-{scheme}.png")
+    ground = visitor.page.evaluate("() => getComputedStyle(document.body).backgroundColor")
+    assert (sum(map(int, re.findall(r"\d+", ground))) < 384) == (scheme == "dark")
