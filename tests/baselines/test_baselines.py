@@ -156,6 +156,13 @@ def test_rbf_takes_control_points_that_span_no_volume(p, shape):
     np.testing.assert_allclose(baselines.get("rbf")(shape(np.concatenate([p, [[2, 3, 4]]])), p, q)[:-1], q, atol=1e-9)
 
 
+def test_rbf_does_not_throw_far_what_is_beside_control_points_in_almost_a_plane(shape):
+    p = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 1e-3]])
+    q = np.add(p, [[0, 0, 0], [0, 0, 0.1], [0, 0.1, 0], [0, 0, 0.1]])
+    y = baselines.get("rbf")(shape([[0.5, 0.5, 0.5]]), p, q)
+    assert np.linalg.norm(y - 0.5) < 0.2
+
+
 def test_rbf_refuses_two_control_points_in_one_place(shape):
     with pytest.raises(NotApplicable, match="two are in the same"):
         baselines.get("rbf")(shape(np.eye(3)), [[0, 0, 0], [0, 0, 0]], [[0, 0, 0], [0, 0, 1]])

@@ -21,9 +21,8 @@ POSES = [
     ("rbf", "lion-poses", 40, 1.44),
     ("rbf", "samba", 12, 2.87),
     ("rbf", "samba", 40, 1.34),
-    ("arap", "cat-poses", 12, 5.64),
+    ("arap", "lion-poses", 12, 3.60),
     ("arap", "lion-poses", 40, 1.58),
-    ("arap", "samba", 40, 0.94),
 ]
 
 

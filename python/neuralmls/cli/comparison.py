@@ -18,7 +18,7 @@ def document(shape: Shape, results: dict[str, Result]) -> dict[str, Any]:
     """Everything that was measured; lengths in halves of the longest side of the shape's box."""
     methods = []
     for name, result in results.items():
-        measures = None if result.measures is None else asdict(result.measures)
+        measures = None if result.measures is None else _known(asdict(result.measures))
         methods.append(
             {
                 "name": name,
@@ -70,7 +70,7 @@ def show(told: dict[str, Any], file: TextIO) -> None:
             method["title"],
             _percent(method["measures"]["at_vertices"] / 2),
             _percent(_half(method["measures"]["at_points"])),
-            _count(method["measures"]["folded"]),
+            _number(method["measures"]["folded"], ","),
             f"{method['seconds']:.2f}",
         )
         for method in done
@@ -97,15 +97,15 @@ def _distortion(method: dict[str, Any]) -> tuple[str, ...]:
     strain = measures["strain"]
     return (
         method["title"],
-        f"{measures['curvature']['mean']:.4g}",
-        f"{measures['curvature']['median']:.4g}",
-        f"{measures['laplacian']['mean']:.3g}",
-        f"{strain['dirichlet_mean']:.4g}",
-        f"{strain['dirichlet_median']:.4g}",
+        _number(measures["curvature"]["mean"], ".4g"),
+        _number(measures["curvature"]["median"], ".4g"),
+        _number(measures["laplacian"]["mean"], ".3g"),
+        _number(strain["dirichlet_mean"], ".4g"),
+        _number(strain["dirichlet_median"], ".4g"),
         _percent(strain["area_mean"]),
         _percent(strain["edge_mean"]),
-        "-" if measures["volume"] is None else f"{100 * measures['volume']:+.1f} %",
-        _count(measures["flips"]["count"]),
+        _percent(measures["volume"], "+.2f"),
+        _number(measures["flips"]["count"], ","),
     )
 
 
@@ -131,13 +131,21 @@ def _flat(content: dict[str, Any], before: str = "") -> dict[str, Any]:
     return flat
 
 
+def _known(content: dict[str, Any]) -> dict[str, Any]:
+    """The document with None where a figure is that of nothing (NaN), which JSON has no word for."""
+    return {
+        name: _known(value) if isinstance(value, dict) else None if value != value else value
+        for name, value in content.items()
+    }
+
+
 def _half(value: float | None) -> float | None:
     return None if value is None else value / 2
 
 
-def _percent(part: float | None) -> str:
-    return "-" if part is None else f"{100 * part:.2f} %"
+def _number(value: float | None, digits: str) -> str:
+    return "-" if value is None else format(value, digits)
 
 
-def _count(number: int | None) -> str:
-    return "-" if number is None else f"{number:,}"
+def _percent(part: float | None, digits: str = ".2f") -> str:
+    return "-" if part is None else f"{100 * part:{digits}} %"

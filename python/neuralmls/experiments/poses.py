@@ -50,7 +50,7 @@ def read_poses(path: str | os.PathLike[str]) -> Poses:
         The file cannot be read, an array is missing or does not fit the others.
     """
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as stored:
             arrays = {name: stored[name] for name in ("rest", "poses", "faces")}
     except OSError as error:
         raise FileError(f"{path}: cannot read: {error.strerror or error}") from error
