@@ -36,7 +36,7 @@ METHODS_OF_BOXES = {
 
 
 def cases_of_boxes(folder: Path) -> list[Case]:
-    """Four cases: a chair, which is a cube, and a car, which is a long one, with two displacements each."""
+    """Return four cases: a chair, which is a cube, and a car, which is a long one, with two displacements each."""
     found = []
     for category, stretch in (("chair", 1.0), ("car", 2.0)):
         path = folder / f"{category}.obj"

@@ -13,6 +13,7 @@ import numpy as np
 
 from neuralmls.control_points import ControlPoints
 from neuralmls.errors import FileError, NeuralMLSError
+from neuralmls.experiments.methods import Geometry
 from neuralmls.experiments.study.variants import VARIANTS, made
 from neuralmls.shape import Shape, read
 
@@ -37,7 +38,7 @@ class Case:
     category, name, displacement : str
     origin : str
         Where the shape comes from: "published with the paper", or "made by this package".
-    shape : Shape
+    shape : Shape or Surface
         It faces +x, y is up.
     control_points : ControlPoints
     """
@@ -46,7 +47,7 @@ class Case:
     name: str
     displacement: str
     origin: str
-    shape: Shape
+    shape: Geometry
     control_points: ControlPoints
 
 
@@ -69,9 +70,9 @@ def cases(data: str | os.PathLike[str] | None) -> Iterator[Case]:
             for displacement, points in displacements.items():
                 yield Case(category, name, displacement, "published with the paper", shape, points)
         for variant in VARIANTS[category][: SHAPES - len(published)]:
-            shape, displacements = made(variant)
+            surface, displacements = made(variant)
             for displacement, points in displacements.items():
-                yield Case(category, variant.name, displacement, "made by this package", shape, points)
+                yield Case(category, variant.name, displacement, "made by this package", surface, points)
 
 
 def _published(folder: Path, names: Iterable[str]) -> list[tuple[str, tuple[Shape, dict[str, ControlPoints]]]]:

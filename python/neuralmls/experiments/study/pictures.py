@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from neuralmls.control_points import ControlPoints
+from neuralmls.experiments.methods import Geometry
 from neuralmls.figures.camera import fitted
 from neuralmls.figures.palette import CLAY, SOURCE, TARGET
 from neuralmls.figures.stage import Stage, pyvista_or_refuse
-from neuralmls.shape import Shape
 
 Array = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ FOLLOWED = 0.3
 
 
 def pictures(
-    shape: Shape,
+    shape: Geometry,
     control_points: ControlPoints,
     results: Sequence[Array],
     *,

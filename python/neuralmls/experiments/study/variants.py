@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 from numpy.typing import NDArray
 
 from neuralmls.control_points import ControlPoints
+from neuralmls.experiments.methods import Surface
 from neuralmls.samples import make
 from neuralmls.samples.parts import rotation
-from neuralmls.samples.sample import Sample, write_obj
-from neuralmls.shape import Shape, read
 
 Array = NDArray[np.float64]
 Knots = tuple[tuple[float, float], ...]
@@ -124,19 +121,14 @@ DISPLACEMENTS: dict[str, dict[str, Offsets]] = {
 }
 
 
-def made(variant: Variant) -> tuple[Shape, dict[str, ControlPoints]]:
-    """Make a variant; return the shape, and its control points moved by each displacement, by name."""
+def made(variant: Variant) -> tuple[Surface, dict[str, ControlPoints]]:
+    """Make a variant; return its surface, and its control points moved by each displacement, by name."""
     sample = make(variant.sample)
-    for part in sample.parts:
-        part.vertices = _stretched(part.vertices, variant.knots) @ FACING_X.T
-    sources = _stretched(sample.control_points.sources, variant.knots)
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "shape.obj"
-        write_obj(Sample(sample.name, sample.parts, sample.materials, sample.control_points), path)
-        shape = read(path)
-    points = ControlPoints(sources @ FACING_X.T, names=sample.control_points.names)
-    half = float(np.ptp(shape.bounds, axis=0).max()) / 2
-    return shape, {
+    surface = Surface(_stretched(sample.vertices, variant.knots) @ FACING_X.T, sample.triangles)
+    sources = _stretched(sample.control_points.sources, variant.knots) @ FACING_X.T
+    points = ControlPoints(sources, names=sample.control_points.names)
+    half = float(np.ptp(surface.positions, axis=0).max()) / 2
+    return surface, {
         name: points.moved({control: half * FACING_X @ offset for control, offset in _both_sides(offsets).items()})
         for name, offsets in DISPLACEMENTS[variant.sample].items()
     }
