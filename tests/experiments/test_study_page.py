@@ -193,6 +193,26 @@ def test_a_reloaded_page_goes_on_where_it_was(visit):
     assert visitor.chosen() == [2]
 
 
+def test_a_broken_memory_of_the_browser_is_begun_anew(visit):
+    visitor = visit(seed=1)
+    visitor.press("Enter", "1", "Enter")
+    for broken in ("hello", "{}", "7", "null"):
+        visitor.page.evaluate("text => localStorage.setItem(Object.keys(localStorage)[0], text)", broken)
+        visitor.page.reload()
+        assert visitor.heading() == "Which result looks best?"
+        visitor.press("Enter", "1", "Enter")
+
+
+def test_on_a_tablet_pictures_are_touched(visit):
+    visitor = visit(seed=1, has_touch=True, is_mobile=True)
+    assert not visitor.page.locator(".keys").is_visible()
+    visitor.page.locator("#begin").tap()
+    assert visitor.page.locator("#hint").inner_text() == "Touch the picture that looks best"
+    visitor.page.locator(".result").nth(1).tap()
+    visitor.page.locator("#next").tap()
+    assert visitor.heading().startswith("Question 2 of 4")
+
+
 def test_a_choice_can_be_changed_and_none_be_left_out(visit, tmp_path):
     visitor = visit(seed=1)
     visitor.press("Enter", "Enter", "ArrowRight", "9")

@@ -7,6 +7,7 @@ const study = JSON.parse(document.getElementById("study").textContent);
 const one = (selector) => document.querySelector(selector);
 const all = (selector) => [...document.querySelectorAll(selector)];
 
+const touched = matchMedia("(pointer: coarse)").matches; // a tablet: no word about keys, which work all the same
 const givenSeed = /(?:^#|&)seed=(\d+)(?:&|$)/.exec(location.hash);
 const storageName = `neuralmls-study-${study.id}${givenSeed ? `-${givenSeed[1]}` : ""}`;
 
@@ -53,7 +54,8 @@ function newcomer() {
 
 function stored() {
   try {
-    return JSON.parse(localStorage.getItem(storageName));
+    const found = JSON.parse(localStorage.getItem(storageName));
+    return found?.participant && found.choices ? found : null;
   } catch {
     return null; // storage is switched off, or what is there is broken
   }
@@ -174,8 +176,8 @@ function showChoice() {
   one("#next").ariaDisabled = String(chosen === undefined);
   one("#next").textContent = at + 1 < sequence.length ? "Next →" : "Finish →";
   one("#hint").textContent = chosen === undefined
-    ? `Choose with the keys 1 to ${question.order.length}, or click a picture`
-    : "Enter goes on; you may still change your choice";
+    ? touched ? "Touch the picture that looks best" : `Choose with the keys 1 to ${question.order.length}, or click a picture`
+    : `${touched ? "Next" : "Enter"} goes on; you may still change your choice`;
 }
 
 // What is done
