@@ -96,7 +96,7 @@ DISPLACEMENTS: dict[str, dict[str, Offsets]] = {
             "side-wing-tip": (0.0, 0.0, 0.2),
             "side-engine": (0.0, 0.0, 0.2),
             "fin-tip": (0.0, 0.3, 0.0),
-            "nose": (0.0, 0.0, -0.2),
+            "nose": (0.0, 0.0, -0.1),
         },
         "wings far forward": {"side-wing-tip": (0.0, 0.0, 0.4), "side-engine": (0.0, 0.0, 0.3)},
     },
