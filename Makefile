@@ -48,7 +48,7 @@ fuzz: tools
 	@touch $@
 
 .venv/test.stamp: .venv/bin/python pyproject.toml $(RUST)
-	$(BIN)/python -m pip install --quiet --editable '.[figures,test]'
+	$(BIN)/python -m pip install --quiet --editable '.[baselines,figures,test]'
 	@touch $@ .venv/figures.stamp
 
 .venv/bench.stamp: .venv/bin/python pyproject.toml $(RUST)

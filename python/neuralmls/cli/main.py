@@ -11,6 +11,7 @@ import typer
 from typer.main import get_command
 
 from neuralmls.cli import console
+from neuralmls.cli.convert_kpd import convert_kpd
 from neuralmls.cli.deform import deform
 from neuralmls.cli.demo import demo
 from neuralmls.cli.inspect import inspect
@@ -32,7 +33,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-for command in (deform, inspect, points, render, sample, demo):
+for command in (deform, inspect, points, render, sample, demo, convert_kpd):
     app.command()(command)
 
 
