@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import warnings as python_warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
@@ -144,7 +143,4 @@ def _write(shape: Shape, result: Deformation, output: Path, *, force: bool) -> t
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()
         return [], []
-    with python_warnings.catch_warnings(record=True) as caught:
-        python_warnings.simplefilter("always")
-        written = shape.write(output, result.positions, maps=result.maps, overwrite=force)
-    return [str(path) for path in written], [str(warning.message) for warning in caught]
+    return outputs.write_shape(shape, output, result.positions, maps=result.maps, force=force)

@@ -26,10 +26,7 @@ def demo(
 
     Its legs get longer, its back leans. Writes the shapes and a picture of them.
     """
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(f"{output}: cannot make this folder: {error.strerror or error}") from error
+    outputs.make_folder(output)
     chair, picture = output / "chair.obj", output / "chair.png"
     deformed = {name: output / f"chair-{name}.obj" for name in RESULTS}
     for file in (*sample_files(chair), *deformed.values(), picture):

@@ -11,6 +11,7 @@ A new method is one more entry of `METHODS`.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias
@@ -91,9 +92,19 @@ def classic(title: str = "classic MLS", **options: Any) -> Method:
     return _of_space(title, "classic", **{"alpha": 0.5, **options})
 
 
-def kpd(title: str = "KeypointDeformer", **options: Any) -> Method:
-    """KeypointDeformer with the options of `baselines.kpd`: the file of its weights."""
-    return _of_vertices(title, "kpd", **options)
+def kpd(path: str | os.PathLike[str], title: str = "KeypointDeformer") -> Method:
+    """KeypointDeformer with a network for the shape's category, from a `.safetensors` file.
+
+    Raises
+    ------
+    FileError
+        The file cannot be used.
+    NeuralMLSError
+        SciPy or safetensors is not installed.
+    """
+    from neuralmls.baselines.kpd import KeypointDeformer
+
+    return _of_vertices(title, "kpd", network=KeypointDeformer.read(path))
 
 
 def _of_vertices(title: str, name: str, **options: Any) -> Method:

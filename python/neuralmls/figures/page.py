@@ -1,4 +1,4 @@
-"""The page of a figure: panels side by side, titles above, a legend below."""
+"""The page of a figure: panels side by side, in rows, titles above, a legend below."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def png(
     titles: Sequence[str],
     width: int,
     *,
-    columns: int | None = None,
+    columns: int,
     legend: Sequence[tuple[Colour, str]] = (),
     weights: bool = False,
 ) -> bytes:
@@ -28,30 +28,28 @@ def png(
     ----------
     pictures : panels of the same size, (height, width, 3), larger than they are to be shown
     titles : one for each panel; what does not fit is cut off in front, where paths are least telling
-    columns : how many panels stand in a row; without it, all
+    columns : panels in a row
     legend : colours of balls, and what they mean, from right to left
     weights : whether the legend explains the heat map
     """
     from PIL import Image, ImageDraw
 
-    columns = len(pictures) if columns is None else columns
-    rows = -(-len(pictures) // columns)
     panel_width = width // columns
     panel_height = round(panel_width * pictures[0].shape[0] / pictures[0].shape[1])
     text = max(round(min(width / 64, panel_width / 14)), 9)
     band = round(2.2 * text)
-    row_height = band + panel_height
-    page = Image.new("RGB", (width, rows * row_height + band), "white")
+    rows = -(-len(pictures) // columns)
+    page = Image.new("RGB", (width, rows * (panel_height + band) + band), "white")
     pen = ImageDraw.Draw(page)
     font = _font(text)
     for i, (picture, title) in enumerate(zip(pictures, titles, strict=True)):
         small = Image.fromarray(picture).resize((panel_width, panel_height), Image.Resampling.LANCZOS)
-        left, top = i % columns * panel_width, i // columns * row_height
+        left, top = i % columns * panel_width, i // columns * (panel_height + band)
         page.paste(small, (left, top + band))
         while pen.textlength(title, font=font) > 0.95 * panel_width and len(title) > 2:
             title = "…" + title.lstrip("…")[1:]
         pen.text((left + panel_width / 2, top + band / 2 + 2), title, fill=_rgb(INK), font=font, anchor="mm")
-    x, y = float(width - text), rows * row_height + 0.5 * band
+    x, y = float(width - text), page.height - 0.5 * band
     font = _font(round(0.75 * text))
     for colour, label in legend:
         pen.text((x, y), label, fill=_rgb(INK), font=font, anchor="rm")
@@ -64,10 +62,10 @@ def png(
         x -= 1.2 * text
     if weights:
         pen.text((text, y), "weight  0", fill=_rgb(INK), font=font, anchor="lm")
-        start = round(1.4 * text + pen.textlength("weight  0", font=font))
+        left = round(1.4 * text + pen.textlength("weight  0", font=font))
         bar = np.repeat(heat(np.linspace(0, 1, 9 * text))[None], round(0.6 * text), axis=0)
-        page.paste(Image.fromarray((bar * 255).round().astype(np.uint8)), (start, round(y - 0.3 * text)))
-        pen.text((start + 9.4 * text, y), "1", fill=_rgb(INK), font=font, anchor="lm")
+        page.paste(Image.fromarray((bar * 255).round().astype(np.uint8)), (left, round(y - 0.3 * text)))
+        pen.text((left + 9.4 * text, y), "1", fill=_rgb(INK), font=font, anchor="lm")
     out = io.BytesIO()
     page.save(out, "PNG")
     return out.getvalue()

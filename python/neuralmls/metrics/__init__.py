@@ -5,10 +5,12 @@ them all at once, in the paper's units.
 """
 
 from neuralmls.metrics.curvature import Change, curvature_change, laplacian, mean_curvature
+from neuralmls.metrics.flips import Flips, flipped_triangles
+from neuralmls.metrics.folds import folded_places
 from neuralmls.metrics.handles import handle_errors
 from neuralmls.metrics.measures import Measures, measure
-from neuralmls.metrics.orientation import Flips, flipped_triangles, folded_places, volume, volume_change
-from neuralmls.metrics.strain import Strain, singular_values, strain
+from neuralmls.metrics.strains import Strain, singular_values, strain
+from neuralmls.metrics.volumes import volume, volume_change
 
 __all__ = [
     "Change",

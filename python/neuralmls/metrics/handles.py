@@ -49,4 +49,5 @@ def handle_errors(x: ArrayLike, y: ArrayLike, p: ArrayLike, q: ArrayLike) -> Arr
             f"found {len(before)}, {len(after)}, {len(sources)}, {len(targets)}"
         )
     nearest = [int(((before - source) ** 2).sum(axis=1).argmin()) for source in sources]
-    return np.linalg.norm(after[nearest] - targets, axis=1)
+    errors: Array = np.linalg.norm(after[nearest] - targets, axis=1)
+    return errors

@@ -10,10 +10,12 @@ from numpy.typing import ArrayLike
 
 from neuralmls.arrays import as_points, box_around
 from neuralmls.metrics.curvature import Change, curvature_change
+from neuralmls.metrics.flips import Flips, flipped_triangles
+from neuralmls.metrics.folds import folded_places
 from neuralmls.metrics.handles import handle_errors
-from neuralmls.metrics.orientation import Flips, flipped_triangles, folded_places, volume_change
-from neuralmls.metrics.strain import Strain, strain
+from neuralmls.metrics.strains import Strain, strain
 from neuralmls.metrics.triangles import Array
+from neuralmls.metrics.volumes import volume_change
 
 # Of the Jacobian's differences, in halves of the box's longest side: far above the rounding of single-precision
 # logits (1e-7), far below what a deformation does.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from neuralmls.metrics.triangles import Array, Indices, as_surface, edges, normals, sound, weighted_median
 
@@ -110,7 +110,7 @@ def strain(x: ArrayLike, y: ArrayLike, faces: ArrayLike) -> Strain:
     )
 
 
-def _singular_values(x: Array, y: Array, faces: Indices, kept: Array) -> Array:
+def _singular_values(x: Array, y: Array, faces: Indices, kept: NDArray[np.bool_]) -> Array:
     values = np.full((len(faces), 2), np.nan)
     old, new = (edges(points, faces[kept])[:, :2] for points in (x, y))
     # The first edge along an axis, in its own length: edges of any size give numbers of a usual one.
