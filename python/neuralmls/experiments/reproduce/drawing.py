@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from neuralmls.errors import NeuralMLSError
 from neuralmls.experiments.reproduce.lab import Lab
 from neuralmls.experiments.reproduce.subjects import Subject
 from neuralmls.files import write_atomically
@@ -43,20 +42,14 @@ def plots(lab: Lab, file: str, rows: int, columns: int, size: tuple[float, float
 
     Raises
     ------
-    NeuralMLSError
-        Matplotlib is not installed.
     FileError
         The file cannot be written.
     """
-    try:
-        from matplotlib import rc_context
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise NeuralMLSError("plots need Matplotlib: pip install 'neuralmls[figures]'") from error
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
     with rc_context(STYLE):
         figure = Figure(figsize=size, layout="constrained")
-        FigureCanvasAgg(figure)
         yield figure.subplots(rows, columns, squeeze=False, **options)
         out = io.BytesIO()
         figure.savefig(out, format="png", dpi=60 if lab.quick else 150)
@@ -74,13 +67,23 @@ def draw_weights(axes: Axes, x: Array, w: Array, p: Array, title: str) -> None:
     axes.set_xlim(x[0, 0], x[-1, 0])
 
 
-def draw_shapes(lab: Lab, file: str, subject: Subject, results: Mapping[str, Array], columns: int) -> None:
-    """Draw a shape with its control points and what became of it, `columns` panels in a row."""
+def draw_shapes(
+    lab: Lab,
+    file: str,
+    subject: Subject,
+    results: Mapping[str, Array],
+    columns: int,
+    colours: Sequence[Array] | None = None,
+) -> None:
+    """Draw a shape with its control points and what became of it, `columns` panels in a row.
+
+    `colours`, (n, 3) for each panel, stand in for the shape's own.
+    """
     from neuralmls.figures.render import Panel, render
 
     panels = [
-        Panel(title, positions, subject.faces, colours=subject.colours)
-        for title, positions in {"source": subject.positions, **results}.items()
+        Panel(title, positions, subject.faces, colours=subject.colours if colours is None else colours[number])
+        for number, (title, positions) in enumerate({"source": subject.positions, **results}.items())
     ]
     azimuth, elevation = subject.view
     render(

@@ -28,6 +28,7 @@ class Item:
 
 
 ITEMS = (
+    Item("fig1", "Figure 1: one network, several displacements", "displacements"),
     Item("fig2", "Figure 2: weights on a line", "weights_1d"),
     Item("square", "Weights of a square of control points", "weights_2d"),
     Item("fig4", "Figure 4: methods side by side", "comparison"),
@@ -40,7 +41,6 @@ ITEMS = (
     Item("fig10", "Figure 10: epsilon of classic weights", "epsilon"),
     Item("training", "Width, steps and seed of the network", "training"),
     Item("fourier", "Fourier features and affine maps", "fourier"),
-    Item("properties", "What the paper says of the method", "properties"),
 )
 NAMES = tuple(item.name for item in ITEMS)
 

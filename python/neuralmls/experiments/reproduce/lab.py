@@ -38,6 +38,11 @@ class Lab:
         path = None if self.data is None else self.data / name
         return path if path is not None and path.exists() else None
 
+    def keypoint_weights(self, category: str) -> Path | None:
+        """KeypointDeformer's published weights for a category, or None where they are not there."""
+        path = None if self.golden is None else self.golden / "kpd" / "weights" / f"kpd_{category}_8kpt.safetensors"
+        return path if path is not None and path.exists() else None
+
     @property
     def width(self) -> int:
         """Neurons a hidden layer: the paper's."""

@@ -91,9 +91,9 @@ class Subject:
         return replace(self, points=points)
 
 
-def chair(lab: Lab) -> Subject:
-    """ShapeNetChair1 with the displacements of the user study's first task, else our sample."""
-    return _shapenet(lab, "chair", "ShapeNetChair1", "user_study_1") or _sample("chair")
+def chair(lab: Lab, case: str = "user_study_1") -> Subject:
+    """ShapeNetChair1 with displacements of the user study, else our sample with its own."""
+    return _shapenet(lab, "chair", "ShapeNetChair1", case) or _sample("chair")
 
 
 def plain_chair(lab: Lab) -> Subject:
@@ -108,6 +108,17 @@ def plain_chair(lab: Lab) -> Subject:
 def airplane(lab: Lab) -> Subject:
     """ShapeNetPlane1 with the default displacements, else our sample."""
     return _shapenet(lab, "airplane", "ShapeNetPlane1", "default") or _sample("airplane")
+
+
+def many(lab: Lab) -> list[Subject]:
+    """All shapes and displacements of the paper that the data has, and the organic shape; else all that are ours."""
+    found = [
+        _shapenet(lab, "airplane" if "Plane" in folder else "chair", folder, case)
+        for folder in ("ShapeNetChair1", "ShapeNetChair3", "ShapeNetPlane1", "ShapeNetPlane2")
+        for case in ("user_study_1", "user_study_2", "user_study_3")
+    ]
+    kept = [subject for subject in found if subject is not None] or [_sample(name) for name in ("chair", "airplane")]
+    return [*kept, _sample("car"), _sample("table"), organic(lab)]
 
 
 def car(lab: Lab) -> Subject:  # noqa: ARG001 - the data has none of the paper's cars
