@@ -41,17 +41,23 @@ def run(lab: Lab) -> Report:
         for colour, (label, values) in zip(COLOURS, points.items(), strict=False):
             for name, error, distortion in values:
                 ax.plot(error, distortion, MARKS.get(name, "*"), color=colour, markersize=8, alpha=0.8)
-            if values:
-                ax.plot([], [], "o", color=colour, label=label)
-        for name, mark in {**MARKS, "organic": "*"}.items():
-            ax.plot([], [], mark, color="#777777", markerfacecolor="none", label=name)
+        by_method = [
+            ax.plot([], [], "o", color=colour, label=label)[0]
+            for colour, (label, values) in zip(COLOURS, points.items(), strict=False)
+            if values
+        ]
+        by_shape = [
+            ax.plot([], [], mark, color="#777777", markerfacecolor="none", label=name)[0]
+            for name, mark in {**MARKS, "organic": "*"}.items()
+        ]
+        ax.add_artist(ax.legend(handles=by_method, loc="upper left", title="method", alignment="left"))
+        ax.legend(handles=by_shape, loc="lower left", title="shape", alignment="left")
         ax.set(
             xscale="log",
             yscale="log",
             xlabel="mean distance of the control points' nearest vertices from the targets (of half of the longest side)",
             ylabel="mean |Δ mean curvature|",
         )
-        ax.legend(ncols=2, fontsize=9)
     report.pictures.append(
         Picture(
             "fig6-scatter.png",
