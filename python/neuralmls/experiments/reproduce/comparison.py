@@ -16,7 +16,8 @@ def run(lab: Lab) -> Report:
     """Deform each shape with each method that applies."""
     report = Report(
         f"Network of width {lab.width}, 48 steps, temperature 1; classic weights 1/d; rigid. KeypointDeformer where its "
-        "published weights know the shape; ARAP with the vertices nearest to the control points."
+        "published weights know the shape; ARAP with the vertices nearest to the control points. Look at how far ends come "
+        "to their targets (blue), and at what bends on the way."
     )
     medians: dict[str, tuple[float, float]] = {}
     refusals: dict[str, str | None] = {}

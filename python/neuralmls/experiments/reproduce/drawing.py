@@ -91,7 +91,7 @@ def draw_shapes(
         lab.folder / file,
         control_points=subject.points,
         columns=columns,
-        width=120 * columns if lab.quick else min(1800, 500 * columns),
+        width=120 * columns if lab.quick else min(1800, 420 * columns),
         azimuth=azimuth,
         elevation=elevation,
     )

@@ -125,6 +125,8 @@ def draw_curves(
         for ax, name in zip(axes[0], columns, strict=True):
             ax.plot(values, [outcome.numbers[name] for outcome in found], "o-", color=CLASSIC if reference else NEURAL)
             ax.set(xscale="log", xlabel=parameter, title=COLUMNS[name][0])
+            ax.set_xticks(values[::2], [f"{value:g}" for value in values[::2]])
+            ax.set_xticks([], minor=True)
             if reference is not None:
                 ax.axhline(reference.numbers[name], color=NEURAL, linestyle="--", label=reference.label)
                 ax.legend()

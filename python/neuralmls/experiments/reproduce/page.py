@@ -24,6 +24,7 @@ figcaption, caption { font-size: 14px; color: #333; text-align: left; max-width:
 table { border-collapse: collapse; font-size: 14px; }
 th, td { padding: 5px 10px; border-bottom: 1px solid #e3e3e3; text-align: left; vertical-align: top; }
 .measures td + td, .measures th + th { text-align: right; font-variant-numeric: tabular-nums; }
+.measures td:first-child { white-space: nowrap; }
 .yes, .no, .open { display: inline-block; border-radius: 4px; padding: 1px 8px; font-size: 13px; white-space: nowrap; }
 .yes { background: #dcefe0; color: #14532d; }
 .no { background: #f9dedc; color: #7f1d1d; }
@@ -89,9 +90,10 @@ def _section(item: Item, report: Report) -> str:
         for picture in report.pictures
     )
     tables = "".join(map(_table, report.tables))
+    setting = report.setting[:1].upper() + report.setting[1:]
     return (
         f'<h2 id="{item.name}">{escape(item.title)}</h2>'
-        f'<p class="setting">{escape(report.setting)}</p>{figures}{tables}'
+        f'<p class="setting">{escape(setting)}</p>{figures}{tables}'
     )
 
 

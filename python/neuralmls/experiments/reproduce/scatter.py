@@ -50,8 +50,8 @@ def run(lab: Lab) -> Report:
             ax.plot([], [], mark, color="#777777", markerfacecolor="none", label=name)[0]
             for name, mark in {**MARKS, "organic": "*"}.items()
         ]
-        ax.add_artist(ax.legend(handles=by_method, loc="upper left", title="method", alignment="left"))
-        ax.legend(handles=by_shape, loc="lower left", title="shape", alignment="left")
+        ax.add_artist(ax.legend(handles=by_method, loc=(1.02, 0.72), title="method", alignment="left"))
+        ax.legend(handles=by_shape, loc=(1.02, 0.3), title="shape", alignment="left")
         ax.set(
             xscale="log",
             yscale="log",

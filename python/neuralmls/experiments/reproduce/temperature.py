@@ -32,7 +32,9 @@ def run(lab: Lab) -> Report:
                 "their borders; high ones spread the motion evenly and leave the targets behind.",
             ),
             Picture(
-                "fig8-curves.png", "The same as curves: control points are missed more, and space is bent less sharply."
+                "fig8-curves.png",
+                "The same as curves. With the temperature control points are missed by more, flat sides bend more, and "
+                "the stretch spreads out, so that its energy falls.",
             ),
         ],
         tables=[table("Over the temperature.", "temperature", found, SHOWN)],
