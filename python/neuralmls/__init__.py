@@ -17,7 +17,7 @@ from neuralmls._core import VERSION as __version__
 if TYPE_CHECKING:
     from neuralmls.control_points import ControlPoints
     from neuralmls.deformer import Deformer
-    from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
+    from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError, NotApplicable
     from neuralmls.pipeline import deform
     from neuralmls.placement import farthest_points
     from neuralmls.point_tree import PointTree
@@ -34,6 +34,7 @@ __all__ = [
     "InverseDistanceWeights",
     "NeuralMLSError",
     "NeuralWeights",
+    "NotApplicable",
     "PointTree",
     "Shape",
     "Weights",
@@ -55,6 +56,7 @@ _HOMES = {
     "InverseDistanceWeights": "weights",
     "NeuralMLSError": "errors",
     "NeuralWeights": "weights",
+    "NotApplicable": "errors",
     "PointTree": "point_tree",
     "Shape": "shape",
     "Weights": "weights",

@@ -9,6 +9,7 @@ from neuralmls.baselines.checks import arguments, clean_mesh, finite, library, n
 from neuralmls.errors import NotApplicable
 from neuralmls.shape import Shape
 
+METHOD = "biharmonic deformation"
 ROUNDS = 8  # of the active set method, as in libigl's tutorial: the weights then leave [0, 1] by a few thousandths
 
 
@@ -51,20 +52,20 @@ def biharmonic(shape: Shape, p: ArrayLike, q: ArrayLike) -> NDArray[np.float64]:
     >>> biharmonic(nm.read(path), [[0, 0, 0], [1, 0, 0]], [[0, 0, 0], [1, 0, 1]])[:2].round(6).tolist()
     [[0.0, 0.0, 0.0], [1.0, 0.0, 1.0]]
     """
-    x, sources, targets = arguments("Biharmonic weights", shape, p, q)
+    x, sources, targets = arguments(METHOD, shape, p, q)
     igl = library("igl")
-    held = nearest_vertices("Biharmonic weights", x, sources)
-    faces = clean_mesh("Biharmonic weights", shape, held)
+    held = nearest_vertices(METHOD, x, sources)
+    faces = clean_mesh(METHOD, shape, held)
     if np.array_equal(sources, targets):
         return x.copy()
     centre, half = unit_of(x)
     try:
         raw = igl.bbw((x - centre) / half, faces, held, np.eye(len(held)), max_iter=ROUNDS)
     except RuntimeError as error:
-        raise NotApplicable(f"Biharmonic weights cannot be solved on this mesh: libigl says '{error}'") from error
-    w = np.clip(finite("Biharmonic weights", raw), 0.0, 1.0)
+        raise NotApplicable(f"{METHOD} cannot be solved on this mesh: libigl says '{error}'") from error
+    w = np.clip(finite(METHOD, raw), 0.0, 1.0)
     total = w.sum(axis=1, keepdims=True)
     if not (total > 0).all():
-        raise NotApplicable("Biharmonic weights vanish at a vertex: the mesh is too badly conditioned for them")
+        raise NotApplicable(f"{METHOD} finds no weights for a vertex: the mesh is too badly conditioned for it")
     y: NDArray[np.float64] = x + (w / total) @ (targets - sources)
     return y

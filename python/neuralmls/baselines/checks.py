@@ -88,7 +88,9 @@ def nearest_vertices(method: str, x: Array, p: Array) -> NDArray[np.int64]:
     if (counts > 1).any():
         vertex = indices[first[counts > 1][0]]
         a, b = np.flatnonzero(indices == vertex)[:2]
-        raise NotApplicable(f"{method} moves vertices, and control points {a} and {b} have the same nearest, {vertex}")
+        raise NotApplicable(
+            f"{method} moves vertices, and vertex {vertex} is nearest to both control points {a} and {b}"
+        )
     return indices
 
 

@@ -9,15 +9,16 @@ from neuralmls.baselines.checks import arguments, finite, library, unit_of
 from neuralmls.errors import NotApplicable
 from neuralmls.shape import Shape
 
-# Singular values of the centred control points below this of the largest: they span no direction there.
-RANK = 1e-9
+# Control points whose spread in one direction is less than this of that in another are taken for a plane: a linear term
+# fitted across it would throw what is not in the plane a hundred times as far as the control points go.
+FLAT = 0.01
 
 
 def rbf(shape: Shape, p: ArrayLike, q: ArrayLike) -> NDArray[np.float64]:
     """Return `y = x + sum_i c_i |x - p_i| + A x + b`, the smoothest displacement that takes each `p_i` to its `q_i`.
 
     The kernel `|r|` minimises in space what the thin plate's `r^2 log r` does in the plane: the integral of all second
-    derivatives squared. Where the control points span no volume (fewer than four, in a plane), `A` is zero.
+    derivatives squared. Where the control points span no volume (fewer than four, or about in a plane), `A` is zero.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ def rbf(shape: Shape, p: ArrayLike, q: ArrayLike) -> NDArray[np.float64]:
     centre, half = unit_of(np.concatenate([x, sources]))
     p_unit = (sources - centre) / half
     spread = np.linalg.svd(p_unit - p_unit.mean(axis=0), compute_uv=False)
-    fills_space = len(spread) == 3 and spread[2] > RANK * spread[0] and len(sources) >= 4
+    fills_space = len(spread) == 3 and spread[2] > FLAT * spread[0] and len(sources) >= 4
     interpolate = library("scipy.interpolate").RBFInterpolator
     try:
         moved = interpolate(p_unit, (targets - sources) / half, kernel="linear", degree=1 if fills_space else 0)

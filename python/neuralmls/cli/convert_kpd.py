@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
 
-import typer
+import click
 
-from neuralmls.cli import console, outputs
+from neuralmls.cli import console, options, outputs
 
 
-def convert_kpd(
-    checkpoint: Annotated[Path, typer.Argument(metavar="CHECKPOINT", help="The published PyTorch file, .pth or .pt.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="The .safetensors file to write.")],
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Overwrite files that are there.")] = False,
-) -> None:
-    """Convert weights of KeypointDeformer.
+@click.command("convert-kpd")
+@click.argument("checkpoint", type=options.PATH)
+@options.output("The .safetensors file to write.")
+@options.quiet
+@options.force
+def convert_kpd(*, checkpoint: Path, output: Path, quiet: bool, force: bool) -> None:
+    """Convert published weights of KeypointDeformer.
 
-    Such a file can hold any program. It is read as data: nothing in it is executed, and what is no tensor is refused.
+    A PyTorch file can hold any program. It is read as data: nothing in it is executed,
+    and what is no tensor is refused.
     """
     outputs.check_ending(output, ("safetensors",), "weights")
     outputs.check_output(output, force=force, inputs=[checkpoint])

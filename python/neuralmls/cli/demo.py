@@ -5,11 +5,10 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 from shlex import quote
-from typing import Annotated
 
-import typer
+import click
 
-from neuralmls.cli import console, outputs
+from neuralmls.cli import console, options, outputs
 from neuralmls.cli.sample import sample_files, write_sample
 from neuralmls.cli.stages import Stages
 from neuralmls.cli.weights import Kind, WeightsChoice
@@ -18,10 +17,10 @@ from neuralmls.errors import FileError, NeuralMLSError
 RESULTS: dict[str, Kind] = {"neural": "neural", "classic": "inverse-distance"}
 
 
-def demo(
-    output: Annotated[Path, typer.Option("--output", "-o", help="The folder to write into.")] = Path("out"),
-    force: Annotated[bool, typer.Option("--force", help="Overwrite files that are there.")] = False,
-) -> None:
+@click.command()
+@click.option("--output", "-o", type=options.PATH, default=Path("out"), help="The folder to write into.")
+@options.force
+def demo(*, output: Path, force: bool) -> None:
     """Bend a sample chair with neural and classic weights.
 
     Its legs get longer, its back leans. Writes the shapes and a picture of them.

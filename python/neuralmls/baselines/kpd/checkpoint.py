@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+import math
 import os
 import zipfile
 import zlib
@@ -19,7 +20,6 @@ from neuralmls.errors import FileError, NeuralMLSError
 from neuralmls.files import as_path, write_atomically
 
 MARK = "influence_param"  # of the dictionary that holds the network
-DEEP = 3  # dictionaries that it may lie in
 
 
 def convert(source: str | os.PathLike[str], target: str | os.PathLike[str]) -> int:
@@ -76,13 +76,13 @@ def _tensors(archive: zipfile.ZipFile) -> dict[str, NDArray[Any]]:
     order = f"{folder}byteorder"
     if order in archive.namelist() and _member(archive, order) != b"little":
         raise FileError("expected a checkpoint of a little-endian machine")
-    network = _find(read_pickle(_member(archive, pickles[0])), DEEP)
+    network = _find(read_pickle(_member(archive, pickles[0])))
     if network is None:
         raise FileError(f"expected a dictionary of tensors with '{MARK}', found none: this is no KeypointDeformer")
-    return {
+    return {  # only those that are needed: a file can name its data as often as it likes
         name: _array(archive, f"{folder}data/{value.key}", name, value)
-        for name, value in network.items()
-        if isinstance(name, str) and isinstance(value, Tensor)
+        for name in shapes(1)
+        if isinstance(value := network.get(name), Tensor)
     }
 
 
@@ -97,27 +97,27 @@ def _member(archive: zipfile.ZipFile, name: str) -> bytes:
     return archive.read(info)
 
 
-def _find(value: Any, deep: int) -> dict[Any, Any] | None:
-    if not isinstance(value, dict):
-        return None
-    if MARK in value:
-        return value
-    found = (_find(inner, deep - 1) for inner in value.values()) if deep else iter(())
-    return next((network for network in found if network is not None), None)
+def _find(root: Any) -> dict[Any, Any] | None:
+    """The dictionary that has the network's tensors, in whatever others it lies."""
+    waiting, seen = [root], set()
+    for value in waiting:  # which grows
+        if isinstance(value, dict) and id(value) not in seen:
+            if MARK in value:
+                return value
+            seen.add(id(value))
+            waiting.extend(value.values())
+    return None
 
 
 def _array(archive: zipfile.ZipFile, member: str, name: str, tensor: Tensor) -> NDArray[Any]:
-    storage = np.frombuffer(_member(archive, member), dtype=tensor.dtype)
-    rank = len(tensor.shape)
-    if len(tensor.strides) != rank or rank > 8 or min((*tensor.shape, *tensor.strides, tensor.offset), default=0) < 0:
+    data = _member(archive, member)
+    if len(data) % np.dtype(tensor.dtype).itemsize:
+        raise FileError(f"the data of the tensor '{name}', {len(data)} bytes, are no whole number of its elements")
+    storage = np.frombuffer(data, dtype=tensor.dtype)
+    if not 1 <= len(tensor.shape) == len(tensor.strides) <= 8 or min(tensor.shape) < 1 or min(tensor.strides) < 0:
         raise FileError(f"the tensor '{name}' has no valid shape")
     last = tensor.offset + sum((n - 1) * step for n, step in zip(tensor.shape, tensor.strides, strict=True))
-    elements = 1
-    for n in tensor.shape:
-        elements *= n
-    if elements > storage.size or (elements and last >= storage.size):
+    if tensor.offset < 0 or last >= storage.size or math.prod(tensor.shape) > storage.size:
         raise FileError(f"the tensor '{name}' is larger than its data, {storage.size} numbers")
     steps = [step * storage.itemsize for step in tensor.strides]
-    if not elements:
-        return np.empty(tensor.shape, storage.dtype)
     return np.lib.stride_tricks.as_strided(storage[tensor.offset :], tensor.shape, steps, writeable=False).copy()

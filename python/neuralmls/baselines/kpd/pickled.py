@@ -7,6 +7,7 @@ what it would call are marks to it. Everything else is refused before it means a
 from __future__ import annotations
 
 import pickletools
+import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -71,14 +72,16 @@ def read_pickle(data: bytes) -> Any:
     """
     machine = _Machine()
     try:
-        for opcode, argument, _ in pickletools.genops(data):
-            if opcode.name == "STOP":
-                return machine.pop()
-            machine.step(opcode.name, argument)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # of odd backslashes in strings
+            for opcode, argument, _ in pickletools.genops(data):
+                if opcode.name == "STOP":
+                    return machine.pop()
+                machine.step(opcode.name, argument)
     except FileError:
         raise
-    except (ValueError, IndexError, KeyError, TypeError, AttributeError, OverflowError, UnicodeError) as error:
-        raise FileError(f"its pickle is broken: {error}") from error
+    except (ValueError, IndexError, KeyError, TypeError, OverflowError) as error:
+        raise FileError(f"its pickle is broken: {str(error)[:200]!r}") from error
     raise FileError("its pickle has no end")
 
 
@@ -132,7 +135,7 @@ class _Machine:
         elif name == "GLOBAL":
             push(_named(argument))
         elif name == "STACK_GLOBAL":
-            attribute, module = self.pop(), self.pop()
+            attribute, module = _expect(self.pop(), str), _expect(self.pop(), str)
             push(_named(f"{module} {attribute}"))
         elif name == "BINPERSID":
             push(_storage(self.pop()))
@@ -163,9 +166,8 @@ def _expect(value: Any, kind: type) -> Any:
 
 def _named(name: str) -> Named:
     if name not in _NAMES:
-        raise FileError(
-            f"its pickle asks for '{name.replace(' ', '.')}', and only tensors are read: nothing was executed"
-        )
+        wanted = repr(name.replace(" ", ".")[:100])
+        raise FileError(f"its pickle asks for {wanted}, and only tensors are read: nothing was executed")
     return Named(name)
 
 
