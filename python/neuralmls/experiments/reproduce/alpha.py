@@ -38,7 +38,7 @@ def run(lab: Lab) -> Report:
     report.claims.append(
         Claim(
             "No alpha makes classic weights as good as neural ones.",
-            f"With alpha {said} no measure is more than half above the neural one: choosing alpha well is an answer too."
+            f"With alpha {said} no measure is more than half above the neural one: a well-chosen alpha is one answer."
             if near
             else "With every alpha one of the measures is more than half above the neural one.",
             not near,

@@ -64,8 +64,8 @@ def run(lab: Lab) -> Report:
         claims=[
             Claim(
                 "The network is trained on the control points alone; then the user drags freely.",
-                f"Trained once in {trained:.2f} s, before any displacement; a displacement takes {1000 * frame:.1f} ms (median of three) "
-                f"for {len(subject.positions):,} vertices, on this machine.",
+                f"Trained once in {trained:.2f} s, before any displacement; one takes {1000 * frame:.1f} ms (median of "
+                f"three) for {len(subject.positions):,} vertices, on this machine.",
                 frame < trained,
             ),
             Claim(

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 # Okabe and Ito, 2008: told apart by all eyes; yellow left out, which is too pale for lines.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#555555", "#882255")
 NEURAL, CLASSIC = COLOURS[0], COLOURS[1]
-STYLE = {
+STYLE: Any = {
     "font.size": 10,
     "axes.titlesize": 11,
     "axes.spines.top": False,

@@ -27,8 +27,8 @@ def run(lab: Lab) -> Report:
         ),
         Claim(
             "No epsilon takes the distortion of classic weights away.",
-            f"Median change of mean curvature: {least:.3g} with the best epsilon, {neural['curvature_median']:.3g} with "
-            "neural weights.",
+            f"Median change of mean curvature: {least:.3g} with the best epsilon, {neural['curvature_median']:.3g} "
+            "with neural weights.",
             least > 2 * neural["curvature_median"],
         ),
     ]

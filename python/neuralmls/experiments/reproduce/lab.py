@@ -28,7 +28,7 @@ class Lab:
 
     @classmethod
     def of(cls, folder: Path) -> Lab:
-        """The lab that `$NEURALMLS_DATA` and `$NEURALMLS_GOLDEN` (else the folder `golden` beside the data) describe."""
+        """The lab of `$NEURALMLS_DATA` and `$NEURALMLS_GOLDEN`, or of the folder `golden` beside the data."""
         data = os.environ.get("NEURALMLS_DATA")
         golden = os.environ.get("NEURALMLS_GOLDEN") or (str(Path(data).parent / "golden") if data else None)
         return cls(folder, _folder(data), _folder(golden))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from neuralmls.deformer import Deformer, Transform
 from neuralmls.errors import NotApplicable
+from neuralmls.experiments import methods
 from neuralmls.experiments.methods import Method
 from neuralmls.experiments.reproduce.drawing import CLASSIC, NEURAL, plots
 from neuralmls.experiments.reproduce.lab import Lab
@@ -43,7 +44,10 @@ class Outcome:
     def numbers(self) -> dict[str, float]:
         """The measures of a surface, by name."""
         m = self.measures
-        assert m.curvature is not None and m.laplacian is not None and m.strain is not None and m.flips is not None
+        assert m.curvature is not None
+        assert m.laplacian is not None
+        assert m.strain is not None
+        assert m.flips is not None
         found = {
             "error": m.at_vertices,
             "curvature": m.curvature.mean,
@@ -67,10 +71,20 @@ COLUMNS = {
 }
 
 
-def by_methods(subject: Subject, methods: Mapping[str, Method]) -> tuple[list[Outcome], dict[str, str]]:
+def rivals(lab: Lab, subject: Subject) -> dict[str, Method]:
+    """The methods of the paper's comparison, with KeypointDeformer where its published weights know the shape."""
+    choice = {"neural": methods.neural(steps=48, width=lab.width), "classic MLS": methods.classic()}
+    choice["ARAP"] = methods.METHODS["arap"]
+    weights = None if subject.ours or subject.name != "airplane" else lab.keypoint_weights("airplane")
+    if weights is not None:
+        choice["KeypointDeformer"] = methods.kpd(weights)
+    return choice
+
+
+def by_methods(subject: Subject, choice: Mapping[str, Method]) -> tuple[list[Outcome], dict[str, str]]:
     """Deform a shape with each method: what came of those that apply, and what the others say."""
     found, refusals = [], {}
-    for label, method in methods.items():
+    for label, method in choice.items():
         try:
             y = method(subject, subject.points.sources, subject.points.targets)
         except NotApplicable as refusal:

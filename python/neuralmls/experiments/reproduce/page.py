@@ -54,8 +54,9 @@ def page(reports: Mapping[Item, Report], version: str) -> str:
 <h1>The experiments of NeuralMLS, run again</h1>
 <p>Shechter, Hanocka, Metzer, Giryes, Cohen-Or, “NeuralMLS: Geometry-Aware Control Point Deformation”, Eurographics 2022
 (<a href="https://arxiv.org/abs/2201.01873">arXiv 2201.01873</a>). Every figure and number below was made by neuralmls
-{escape(version)} in one run of <code>neuralmls reproduce</code>; the numbers are in <a href="numbers.json">numbers.json</a>
-too. The claims are in our words. Lengths are in halves of the shape's longest side.</p>
+{escape(version)} in one run of <code>neuralmls reproduce</code>; the numbers are in
+<a href="numbers.json">numbers.json</a> too. The claims are in our words. Lengths are in halves of the shape's longest
+side.</p>
 <nav>{links}</nav>
 {_missing(missing)}
 <h2 id="claims">What the paper says, and what came out</h2>
@@ -73,8 +74,10 @@ too. The claims are in our words. Lengths are in halves of the shape's longest s
 def _missing(missing: list[tuple[Item, str]]) -> str:
     if not missing:
         return ""
-    lines = "".join(f'<li><a href="#{item.name}">{item.name}</a>: {escape(sentence)}</li>' for item, sentence in missing)
-    return f'<div class="missing">What could not be run as in the paper:<ul>{lines}</ul></div>'
+    lines = "".join(
+        f'<li><a href="#{item.name}">{item.name}</a>: {escape(sentence)}</li>' for item, sentence in missing
+    )
+    return f'<div class="missing">What could not be run as in the paper; a verdict on a shape that stands in is one on that shape:<ul>{lines}</ul></div>'
 
 
 def _claim_row(claim: Claim, item: Item) -> str:
@@ -91,10 +94,7 @@ def _section(item: Item, report: Report) -> str:
     )
     tables = "".join(map(_table, report.tables))
     setting = report.setting[:1].upper() + report.setting[1:]
-    return (
-        f'<h2 id="{item.name}">{escape(item.title)}</h2>'
-        f'<p class="setting">{escape(setting)}</p>{figures}{tables}'
-    )
+    return f'<h2 id="{item.name}">{escape(item.title)}</h2><p class="setting">{escape(setting)}</p>{figures}{tables}'
 
 
 def _table(table: Table) -> str:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from neuralmls.experiments import methods
 from neuralmls.experiments.reproduce.drawing import COLOURS, plots
 from neuralmls.experiments.reproduce.lab import Lab
-from neuralmls.experiments.reproduce.outcomes import by_methods, numbers
+from neuralmls.experiments.reproduce.outcomes import by_methods, numbers, rivals
 from neuralmls.experiments.reproduce.report import Claim, Picture, Report
 from neuralmls.experiments.reproduce.subjects import many
 
@@ -22,12 +21,7 @@ def run(lab: Lab) -> Report:
     )
     less, nearer, compared = 0, 0, 0
     for number, subject in enumerate(cases, 1):
-        choice = {"neural": methods.neural(steps=48, width=lab.width), "classic MLS": methods.classic()}
-        choice["ARAP"] = methods.METHODS["arap"]
-        weights = None if subject.ours or subject.name != "airplane" else lab.keypoint_weights("airplane")
-        if weights is not None:
-            choice["KeypointDeformer"] = methods.kpd(weights)
-        found, _ = by_methods(subject, choice)
+        found, _ = by_methods(subject, rivals(lab, subject))
         named = numbers(found)
         for label, row in named.items():
             points[label].append((subject.name, row["error"], row["curvature"]))
@@ -38,7 +32,7 @@ def run(lab: Lab) -> Report:
         compared += 1
     with plots(lab, "fig6-scatter.png", 1, 1, (8.5, 5.6)) as axes:
         ax = axes[0, 0]
-        for colour, (label, values) in zip(COLOURS, points.items(), strict=False):
+        for colour, values in zip(COLOURS, points.values(), strict=False):
             for name, error, distortion in values:
                 ax.plot(error, distortion, MARKS.get(name, "*"), color=colour, markersize=8, alpha=0.8)
         by_method = [
@@ -55,7 +49,7 @@ def run(lab: Lab) -> Report:
         ax.set(
             xscale="log",
             yscale="log",
-            xlabel="mean distance of the control points' nearest vertices from the targets (of half of the longest side)",
+            xlabel="mean distance of the control points' nearest vertices from the targets",
             ylabel="mean |Δ mean curvature|",
         )
     report.pictures.append(

@@ -47,15 +47,13 @@ def run(lab: Lab) -> Report:
             "flat_mean_degrees": float(change[flat].mean()),
             "sharp_mean_degrees": float(change[sharp].mean()),
         }
-        rows.append(
-            [outcome.label, f"{share:.0%}", f"{change[flat].mean():.2f}°", f"{change[sharp].mean():.2f}°"]
-        )
+        rows.append([outcome.label, f"{share:.0%}", f"{change[flat].mean():.2f}°", f"{change[sharp].mean():.2f}°"])
     draw_shapes(
         lab, "fig5-sharp-edges.png", subject, {o.label: o.positions for o in found}, len(found) + 1, colours=colours
     )
     ours, theirs = measured["neural"], measured["classic, alpha 1"]
     return Report(
-        f"{subject.label}; classic weights 1/d^(2 alpha); network of width {lab.width}, 48 steps, temperature 1; rigid.",
+        f"{subject.label}; classic weights 1/d^(2 alpha); network of width {lab.width}, 48 steps, T = 1; rigid.",
         pictures=[
             Picture(
                 "fig5-sharp-edges.png",
@@ -67,7 +65,12 @@ def run(lab: Lab) -> Report:
         tables=[
             Table(
                 "Angles between neighbouring triangles.",
-                ["method", f"flat pairs bent by over {FLAT:g}°", "mean bend of flat pairs", "mean change at sharp edges"],
+                [
+                    "method",
+                    f"flat pairs bent by over {FLAT:g}°",
+                    "mean bend of flat pairs",
+                    "mean change at sharp edges",
+                ],
                 rows,
             )
         ],
@@ -118,4 +121,5 @@ def angles(x: Array, faces: Indices, pairs: Indices) -> Array:
     n = n / np.maximum(np.linalg.norm(n, axis=1, keepdims=True), 1e-300)
     a, b = n[pairs[:, 0]], n[pairs[:, 1]]
     sine, cosine = np.linalg.norm(np.cross(a, b), axis=1), np.abs((a * b).sum(axis=1))
-    return np.degrees(np.arctan2(sine, cosine))
+    found: Array = np.degrees(np.arctan2(sine, cosine))
+    return found

@@ -100,7 +100,8 @@ def plain_chair(lab: Lab) -> Subject:
     """The chair of the paper's sweeps, cut finely so that bending shows, else our sample."""
     found = _shapenet(lab, "chair", "chair2", "default")
     if found is None:
-        return _sample("chair")
+        sample = _sample("chair")
+        return sample.moved([STRETCH.get(name.split("-")[-1], (0.0, 0.0, 0.0)) for name in sample.points.names])
     x, faces = cut(found.positions, found.faces, 0.2 if lab.quick else 0.05)
     return replace(found, origin=found.origin + ", cut finely", positions=x, faces=faces)
 

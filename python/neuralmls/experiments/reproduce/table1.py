@@ -74,7 +74,11 @@ def _beside_the_paper(lab: Lab, subject: Subject, found: list[Outcome], report: 
         row = [label + (", mean of four seeds" if label == "neural" else ""), f"{printed}", f"{printed / 1880:.3f}"]
         for values, form in ((single, "{:.1f}"), (double, "{:.1f}"), (median, "{:.2f}")):
             missing = label not in values
-            row += ["not run"] * 2 if missing else [form.format(values[label]), f"{values[label] / values['classic MLS']:.3f}"]
+            row += (
+                ["not run"] * 2
+                if missing
+                else [form.format(values[label]), f"{values[label] / values['classic MLS']:.3f}"]
+            )
         rows.append(row)
     head = ["method", "paper", "ratio to classic"]
     for title in ("single precision", "double precision", "median, double precision"):

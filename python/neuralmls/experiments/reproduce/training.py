@@ -57,10 +57,10 @@ def run(lab: Lab) -> Report:
         numbers={name: {"own_weight": own[name], "measures": numbers(found[name])} for name in series},
         claims=[
             Claim(
-                "The results do not hang on the seed.",
+                "Seeds differ less than methods do.",
                 f"Five seeds: control-point error {errors.min():.4f} to {errors.max():.4f}, median change of mean "
                 f"curvature {distortion.min():.3g} to {distortion.max():.3g}; classic weights (1/d) {rival:.3g}.",
-                bool(np.ptp(errors) < 0.01 and distortion.max() < 0.5 * rival),
+                bool(np.ptp(errors) < 0.01 and np.abs(distortion - rival).min() > np.ptp(distortion)),
             )
         ],
     )
