@@ -2,52 +2,43 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
+import click
 
-from neuralmls.cli import console
+from neuralmls.cli import console, options
 from neuralmls.cli.stages import Stages
 from neuralmls.errors import ArgumentError, FileError, NotApplicable
 
 if TYPE_CHECKING:
     from neuralmls.experiments.poses import Poses
 
-benchmark = typer.Typer(
-    name="benchmark",
-    help="Measure the methods where the truth is known.",
-    no_args_is_help=True,
-    rich_markup_mode=None,
-)
 
-
-@benchmark.callback()
-def _benchmark() -> None:
-    """Keeps `poses` a command of its own."""
+@click.group(no_args_is_help=False)
+def benchmark() -> None:
+    """Measure the methods where the truth is known."""
 
 
 @benchmark.command()
-def poses(
-    folder: Annotated[
-        Path, typer.Argument(metavar="FOLDER", help="Of .npz files with rest (n, 3), poses (k, n, 3), faces (f, 3).")
-    ],
-    methods: Annotated[
-        str | None, typer.Option(metavar="NAME,...", help="rbf,classic,neural,arap,biharmonic if not given.")
-    ] = None,
-    counts: Annotated[str, typer.Option(metavar="M,...", help="Numbers of control points.")] = "12,40",
-    json: Annotated[bool, typer.Option("--json", help="The table as JSON, for machines.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
-) -> None:
+@click.argument("folder", type=options.PATH)
+@click.option("--methods", metavar="NAME,...", help="rbf,classic,neural,arap if not given; also biharmonic.")
+@click.option("--counts", metavar="M,...", default="12,40", help="Numbers of control points.")
+@options.json
+@options.quiet
+def poses(*, folder: Path, methods: str | None, counts: str, json: bool, quiet: bool) -> None:
     """Compare deformed shapes with their true poses.
+
+    FOLDER holds .npz files with the arrays rest (n, 3), poses (k, n, 3) and faces (f, 3).
 
     Control points, spread over the shape at rest, move to where they are in a pose; how far are
     the other vertices from where they are? The mean over vertices and up to six poses of a
     file, in % of the diagonal of the box at rest.
     """
-    from neuralmls.experiments.poses import POSE_METHODS
+    from neuralmls.experiments.poses import POSE_METHODS, QUICK
 
-    chosen = _names(methods, list(POSE_METHODS))
+    chosen = list(QUICK) if methods is None else _names(methods, list(POSE_METHODS))
     numbers = _numbers(counts)
     if not folder.is_dir():
         raise FileError(f"{folder}: expected a folder of .npz files")
@@ -68,7 +59,7 @@ def poses(
     elif told:
         _show(told, chosen)
     if refused:
-        raise typer.Exit(1)
+        raise click.exceptions.Exit(1)
 
 
 def _measured(file: Path, names: list[str], counts: list[int], stages: Stages) -> list[dict[str, Any]]:
@@ -118,11 +109,11 @@ def _show(rows: list[dict[str, Any]], names: list[str]) -> None:
     for row in rows:
         for name, reason in row["not_applicable"].items():
             where = f"{Path(row['file']).stem}, {row['control_points']} control points"
-            console.line(f"  {POSE_METHODS[name].title} does not apply to {where}: {reason}")
+            console.line(f"  {POSE_METHODS[name].title} does not apply to {where}: {reason}", sys.stdout)
 
 
-def _names(text: str | None, known: list[str]) -> list[str]:
-    names = known if text is None else text.split(",")
+def _names(text: str, known: list[str]) -> list[str]:
+    names = text.split(",")
     for name in names:
         if name not in known:
             raise ArgumentError(f"--methods: expected names out of {', '.join(known)}, found '{name}'")

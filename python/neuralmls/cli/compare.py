@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
+import click
 
-from neuralmls.cli import console, outputs
+from neuralmls.cli import console, options, outputs
 from neuralmls.cli.stages import Stages
-from neuralmls.errors import ControlPointError
+from neuralmls.errors import ArgumentError, ControlPointError
 
 if TYPE_CHECKING:
     from neuralmls.control_points import ControlPoints
@@ -18,21 +18,31 @@ if TYPE_CHECKING:
     from neuralmls.shape import Shape
 
 
+@click.command()
+@options.shape
+@options.points("The control points and their targets, JSON or CSV.")
+@click.option(
+    "--kpd", metavar="FILE", type=options.PATH, help="KeypointDeformer's weights for such shapes, .safetensors."
+)
+@click.option("--output", "-o", metavar="FOLDER", type=options.PATH, help="Write each deformed shape into it.")
+@click.option("--picture", type=options.PATH, help="Draw the source and all results, .png.")
+@click.option("--scatter", type=options.PATH, help="Draw distortion against control-point error, .png.")
+@click.option("--csv", type=options.PATH, help="Write every figure, .csv.")
+@options.json
+@options.quiet
+@options.force
 def compare(
-    shape: Annotated[Path, typer.Argument(metavar="SHAPE", help="OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV or NPY.")],
-    points: Annotated[Path, typer.Option(help="The control points and their targets, JSON or CSV.")],
-    kpd: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="KeypointDeformer's weights for such shapes, .safetensors.")
-    ] = None,
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="FOLDER", help="Write each deformed shape into it.")
-    ] = None,
-    picture: Annotated[Path | None, typer.Option(help="Draw the source and all results, .png.")] = None,
-    scatter: Annotated[Path | None, typer.Option(help="Draw distortion against control-point error, .png.")] = None,
-    csv: Annotated[Path | None, typer.Option("--csv", help="Write every figure, .csv.")] = None,
-    json: Annotated[bool, typer.Option("--json", help="Every figure as JSON, for machines.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No tables and no progress.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Overwrite files that are there.")] = False,
+    *,
+    shape: Path,
+    points: Path,
+    kpd: Path | None,
+    output: Path | None,
+    picture: Path | None,
+    scatter: Path | None,
+    csv: Path | None,
+    json: bool,
+    quiet: bool,
+    force: bool,
 ) -> None:
     """Deform a shape by every method that can, and measure each.
 
@@ -58,7 +68,7 @@ def compare(
 
     from neuralmls.cli import comparison, deformation
     from neuralmls.control_points import ControlPoints
-    from neuralmls.experiments.compare import attempt
+    from neuralmls.experiments.compare import attempt, load_libraries
     from neuralmls.experiments.methods import kpd as kpd_method
     from neuralmls.shape import read
 
@@ -69,24 +79,27 @@ def compare(
     warnings = deformation.check_points(control_points, points, source)
     if not (control_points.sources != control_points.targets).any():
         raise ControlPointError(f"{points}: no control point is moved, so that there is nothing to compare")
+    if scatter is not None and (source.faces is None or source.positions.shape[1] != 3):
+        raise ArgumentError(f"--scatter: distortion is that of a surface, and {shape} has no faces")
+    if output is not None:
+        outputs.make_folder(output)
     for sentence in warnings:
         console.warning(sentence)
+    load_libraries()
     results: dict[str, Result] = {}
     for name, method in methods.items():
         with stages.stage(name):
             results[name] = attempt(method, source, control_points.sources, control_points.targets)
     told: dict[str, Any] = {"input": str(shape), "points": str(points), "unit": deformation.longest_side(source) / 2}
     told |= comparison.document(source, results) | {"files": [], "warnings": warnings}
-    if output is not None:
-        outputs.make_folder(output)
-        for name, file in deformed.items():
-            positions = results[name].positions
-            if positions is not None:
-                files, kept = outputs.write_shape(source, file, positions, force=force)
-                told["files"] += files
-                for sentence in kept:
-                    console.warning(sentence)
-                    warnings.append(sentence)
+    for name, file in deformed.items():
+        positions = results[name].positions
+        if positions is not None:
+            files, kept = outputs.write_shape(source, file, positions, force=force)
+            told["files"] += files
+            for sentence in kept:
+                console.warning(sentence)
+                warnings.append(sentence)
     if csv is not None:
         comparison.write_csv(csv, told["methods"])
     if picture is not None:

@@ -18,7 +18,7 @@ def document(shape: Shape, results: dict[str, Result]) -> dict[str, Any]:
     """Everything that was measured; lengths in halves of the longest side of the shape's box."""
     methods = []
     for name, result in results.items():
-        measures = None if result.measures is None else asdict(result.measures)
+        measures = None if result.measures is None else _known(asdict(result.measures))
         methods.append(
             {
                 "name": name,
@@ -34,7 +34,7 @@ def document(shape: Shape, results: dict[str, Result]) -> dict[str, Any]:
 
 def write_csv(path: Path, methods: list[dict[str, Any]]) -> None:
     """Write a row a method and a column a figure, empty where there is none."""
-    rows = [_flat(method) for method in methods]
+    rows = [_flat({**method, **(method["measures"] or {}), "measures": {}}) for method in methods]
     names = dict.fromkeys(name for row in rows for name in row)
     out = io.StringIO()
     writer = csv.DictWriter(out, list(names), lineterminator="\n")
@@ -44,7 +44,7 @@ def write_csv(path: Path, methods: list[dict[str, Any]]) -> None:
 
 
 def draw_scatter(path: Path, results: dict[str, Result]) -> None:
-    """Draw distortion, or what strain there is where a shape has no faces, against control-point error."""
+    """Draw each method's distortion against its control-point error."""
     from neuralmls.figures.scatter import scatter
 
     points = {
@@ -70,7 +70,7 @@ def show(told: dict[str, Any], file: TextIO) -> None:
             method["title"],
             _percent(method["measures"]["at_vertices"] / 2),
             _percent(_half(method["measures"]["at_points"])),
-            _count(method["measures"]["folded"]),
+            _number(method["measures"]["folded"], ","),
             f"{method['seconds']:.2f}",
         )
         for method in done
@@ -84,9 +84,10 @@ def show(told: dict[str, Any], file: TextIO) -> None:
         console.table([*head, "flipped"], [_distortion(method) for method in surfaces], range(1, 10), file)
         for sentence in _left_out(surfaces[0]["measures"], told):
             console.line(f"  {sentence}", file)
-    for method in told["methods"]:
-        if method["not_applicable"] is not None:
-            console.line(f"  {method['title']} does not apply: {method['not_applicable']}", file)
+    reasons = [(m["title"], m["not_applicable"]) for m in told["methods"] if m["not_applicable"] is not None]
+    if reasons:
+        print("\nwhat does not apply", file=file)
+        console.pairs(reasons, file)
     for name in told["files"]:
         console.line(f"  wrote {name}", file)
 
@@ -96,15 +97,15 @@ def _distortion(method: dict[str, Any]) -> tuple[str, ...]:
     strain = measures["strain"]
     return (
         method["title"],
-        f"{measures['curvature']['mean']:.4g}",
-        f"{measures['curvature']['median']:.4g}",
-        f"{measures['laplacian']['mean']:.3g}",
-        f"{strain['dirichlet_mean']:.4g}",
-        f"{strain['dirichlet_median']:.4g}",
+        _number(measures["curvature"]["mean"], ".4g"),
+        _number(measures["curvature"]["median"], ".4g"),
+        _number(measures["laplacian"]["mean"], ".3g"),
+        _number(strain["dirichlet_mean"], ".4g"),
+        _number(strain["dirichlet_median"], ".4g"),
         _percent(strain["area_mean"]),
         _percent(strain["edge_mean"]),
-        "-" if measures["volume"] is None else f"{100 * measures['volume']:+.1f} %",
-        _count(measures["flips"]["count"]),
+        _percent(measures["volume"], "+.2f"),
+        _number(measures["flips"]["count"], ","),
     )
 
 
@@ -123,21 +124,28 @@ def _left_out(measures: dict[str, Any], told: dict[str, Any]) -> list[str]:
 
 
 def _flat(content: dict[str, Any], before: str = "") -> dict[str, Any]:
-    """The values of nested documents under joined names."""
+    """The values of nested documents, under joined names."""
     flat: dict[str, Any] = {}
     for name, value in content.items():
-        flat |= _flat(value, f"{name}_") if isinstance(value, dict) else {f"{before}{name}": value}
-    flat.pop("measures", None)
+        flat |= _flat(value, f"{before}{name}_") if isinstance(value, dict) else {f"{before}{name}": value}
     return flat
+
+
+def _known(content: dict[str, Any]) -> dict[str, Any]:
+    """The document with None where a figure is that of nothing (NaN), which JSON has no word for."""
+    return {
+        name: _known(value) if isinstance(value, dict) else None if value != value else value
+        for name, value in content.items()
+    }
 
 
 def _half(value: float | None) -> float | None:
     return None if value is None else value / 2
 
 
-def _percent(part: float | None) -> str:
-    return "-" if part is None else f"{100 * part:.2f} %"
+def _number(value: float | None, digits: str) -> str:
+    return "-" if value is None else format(value, digits)
 
 
-def _count(number: int | None) -> str:
-    return "-" if number is None else f"{number:,}"
+def _percent(part: float | None, digits: str = ".2f") -> str:
+    return "-" if part is None else f"{100 * part:{digits}} %"

@@ -15,7 +15,18 @@ from neuralmls.errors import ArgumentError, NeuralMLSError
 
 BAD_DATA, WRONG_USE, INTERRUPTED = 1, 2, 130
 
-COMMANDS = ("deform", "inspect", "points", "render", "sample", "demo", "convert-kpd", "reproduce")
+COMMANDS = (
+    "deform",
+    "inspect",
+    "points",
+    "render",
+    "compare",
+    "sample",
+    "demo",
+    "convert-kpd",
+    "benchmark",
+    "reproduce",
+)
 
 
 class Commands(click.Group):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
+from importlib import import_module
 from time import perf_counter
 
 from numpy.typing import ArrayLike
@@ -34,6 +36,13 @@ class Result:
     seconds: float | None = None
     measures: Measures | None = None
     reason: str | None = None
+
+
+def load_libraries() -> None:
+    """Import what the baselines need, so that no method's time has that in it; what is not installed is passed over."""
+    for module in ("scipy.interpolate", "scipy.sparse.csgraph", "scipy.spatial", "igl"):
+        with suppress(ImportError):
+            import_module(module)
 
 
 def attempt(method: Method, shape: Geometry, p: ArrayLike, q: ArrayLike) -> Result:

@@ -87,12 +87,12 @@ def neural(
     return Method(title, lambda shape, p, q: space(shape, p, q)(shape.positions), space)
 
 
-def classic(title: str = "classic MLS", **options: Any) -> Method:
+def classic(title: str = baselines.TITLES["classic"], **options: Any) -> Method:
     """Inverse-distance weights with the options of `baselines.classic`; 1/d, as in the paper, unless told otherwise."""
     return _of_space(title, "classic", **{"alpha": 0.5, **options})
 
 
-def kpd(path: str | os.PathLike[str], title: str = "KeypointDeformer") -> Method:
+def kpd(path: str | os.PathLike[str], title: str = baselines.TITLES["kpd"]) -> Method:
     """KeypointDeformer with a network for the shape's category, from a `.safetensors` file.
 
     Raises
@@ -124,7 +124,7 @@ def _of_space(title: str, name: str, **options: Any) -> Method:
 METHODS: dict[str, Method] = {
     "neural": neural(),
     "classic": classic(),
-    "rbf": _of_space("RBF (thin plate)", "rbf"),
-    "arap": _of_vertices("ARAP", "arap"),
-    "biharmonic": _of_vertices("biharmonic weights", "biharmonic"),
+    "rbf": _of_space(baselines.TITLES["rbf"], "rbf"),
+    "arap": _of_vertices(baselines.TITLES["arap"], "arap"),
+    "biharmonic": _of_vertices(baselines.TITLES["biharmonic"], "biharmonic"),
 }

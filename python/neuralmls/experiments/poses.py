@@ -25,9 +25,11 @@ MOST = 6  # poses of a file, spread evenly over it
 
 # The methods as they were first measured: 1/d^4, and enough steps for 40 control points to arrive.
 POSE_METHODS: dict[str, Method] = METHODS | {
-    "classic": classic("classic MLS, 1/d^4", alpha=2.0),
+    "classic": classic("Classic MLS, 1/d^4", alpha=2.0),
     "neural": neural("NeuralMLS, 200 steps", steps=200),
 }
+
+QUICK = ("rbf", "classic", "neural", "arap")  # biharmonic weights take ten times as long
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ def read_poses(path: str | os.PathLike[str]) -> Poses:
         The file cannot be read, an array is missing or does not fit the others.
     """
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as stored:
             arrays = {name: stored[name] for name in ("rest", "poses", "faces")}
     except OSError as error:
         raise FileError(f"{path}: cannot read: {error.strerror or error}") from error

@@ -69,9 +69,11 @@ def scatter(points: Mapping[str, ArrayLike], path: str | os.PathLike[str], *, x_
     if not drawn:
         raise ArgumentError(f"{path}: expected at least one finite point to draw, found none")
     together = np.concatenate(drawn)
-    for values, set_scale in zip(together.T, (axes.set_xscale, axes.set_yscale), strict=True):
+    for axis, values in zip("xy", together.T, strict=True):
         if values.min() > 0 and values.max() > SPREAD * values.min():
-            set_scale("log")
+            axes.set(**{f"{axis}scale": "log"})
+        elif values.min() >= 0 and values.max() > 0:  # from 0 on, so that distances on paper mean what they say
+            axes.set(**{f"{axis}lim": (-0.02 * values.max(), 1.08 * values.max())})
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
     axes.grid(alpha=0.25)

@@ -40,6 +40,9 @@ CREATURE = {
     "right foot": ((-0.5, -1.0, 0.1), 1.4, 26.0, (0.0, 0.2, 0.6)),
     "tail": ((0.0, -0.25, -1.0), 1.2, 30.0, (0.4, 0.5, 0.0)),
 }
+# Control points of our chair that move as those of the paper's plain chair do: longer legs, a higher back.
+STAY = (0.0, 0.0, 0.0)
+STRETCH = {"foot": (0.0, -0.5, 0.0), "back-top": (0.0, 0.5, 0.0)}
 
 
 @dataclass(frozen=True)
@@ -101,7 +104,7 @@ def plain_chair(lab: Lab) -> Subject:
     found = _shapenet(lab, "chair", "chair2", "default")
     if found is None:
         sample = _sample("chair")
-        return sample.moved([STRETCH.get(name.split("-")[-1], (0.0, 0.0, 0.0)) for name in sample.points.names])
+        return sample.moved([next((o for part, o in STRETCH.items() if part in n), STAY) for n in sample.points.names])
     x, faces = cut(found.positions, found.faces, 0.2 if lab.quick else 0.05)
     return replace(found, origin=found.origin + ", cut finely", positions=x, faces=faces)
 
