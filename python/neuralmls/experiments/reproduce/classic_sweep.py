@@ -49,5 +49,6 @@ def classic_sweep(
         ],
         tables=[table(f"Over {parameter}.", parameter, found, SHOWN)],
         numbers=numbers_of(found),
+        missing=subject.missing,
     )
     return Sweep(dict(zip(values, classic, strict=True)), neural, report)

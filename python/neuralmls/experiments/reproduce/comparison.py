@@ -32,9 +32,8 @@ def run(lab: Lab) -> Report:
         report.numbers[subject.label] = {"measures": numbers(found), "refused": refused}
         medians[subject.name] = found[0].numbers["curvature_median"], found[1].numbers["curvature_median"]
         refusals[subject.name] = refused.get("ARAP")
-        if subject.ours and subject.name != "car":
-            theirs = "armadillo" if make is subjects.organic else subject.name
-            report.missing.append(f"The paper's {theirs}: {subject.label} stands in ($NEURALMLS_DATA).")
+        if make is not subjects.car:
+            report.missing += subject.missing
     report.missing.append("The paper's cars: they are not in the data either; our sample stands in.")
     if not any("KeypointDeformer" in entry["measures"] for entry in report.numbers.values()):
         report.missing.append("KeypointDeformer's published weights and its airplane ($NEURALMLS_DATA).")

@@ -80,5 +80,6 @@ def run(lab: Lab) -> Report:
                 None,
             ),
         ],
+        missing=subject.missing,
         numbers={"seconds_of_training": trained, "seconds_a_frame": seconds, "proposition_1_difference": difference},
     )

@@ -57,4 +57,5 @@ def run(lab: Lab) -> Report:
             )
         ],
         numbers=named,
+        missing=subject.missing,
     )

@@ -77,7 +77,8 @@ def _missing(missing: list[tuple[Item, str]]) -> str:
     lines = "".join(
         f'<li><a href="#{item.name}">{item.name}</a>: {escape(sentence)}</li>' for item, sentence in missing
     )
-    return f'<div class="missing">What could not be run as in the paper; a verdict on a shape that stands in is one on that shape:<ul>{lines}</ul></div>'
+    said = "What could not be run as in the paper; a verdict on a shape that stands in is one on that shape:"
+    return f'<div class="missing">{said}<ul>{lines}</ul></div>'
 
 
 def _claim_row(claim: Claim, item: Item) -> str:

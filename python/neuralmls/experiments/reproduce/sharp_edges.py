@@ -85,6 +85,7 @@ def run(lab: Lab) -> Report:
             )
         ],
         numbers=measured,
+        missing=subject.missing,
     )
 
 

@@ -40,9 +40,13 @@ CREATURE = {
     "right foot": ((-0.5, -1.0, 0.1), 1.4, 26.0, (0.0, 0.2, 0.6)),
     "tail": ((0.0, -0.25, -1.0), 1.2, 30.0, (0.4, 0.5, 0.0)),
 }
-# Control points of our chair that move as those of the paper's plain chair do: longer legs, a higher back.
-STAY = (0.0, 0.0, 0.0)
-STRETCH = {"foot": (0.0, -0.5, 0.0), "back-top": (0.0, 0.5, 0.0)}
+# Our plain chair: boxes by centre and size, x to the front. It gets longer legs and a higher back, as the paper's does.
+BOXES = [
+    ((0.0, 0.0, 0.0), (1.1, 0.14, 0.96)),
+    ((-0.48, 0.52, 0.0), (0.14, 0.9, 0.96)),
+    *(((x, -0.5, z), (0.12, 0.86, 0.12)) for x in (-0.48, 0.48) for z in (-0.41, 0.41)),
+]
+STRETCH = 0.5
 
 
 @dataclass(frozen=True)
@@ -87,6 +91,11 @@ class Subject:
         """Name and origin."""
         return f"{self.name} ({self.origin})"
 
+    @property
+    def missing(self) -> list[str]:
+        """What a report has to say of a shape that stands in."""
+        return [f"The paper's shape: {self.label} stands in ($NEURALMLS_DATA)."] if self.ours else []
+
     def moved(self, offsets: ArrayLike) -> Subject:
         """The same shape with the control points moved by offsets (m, 3) instead."""
         targets = self.points.sources + np.asarray(offsets, dtype=np.float64)
@@ -100,11 +109,8 @@ def chair(lab: Lab, case: str = "user_study_1") -> Subject:
 
 
 def plain_chair(lab: Lab) -> Subject:
-    """The chair of the paper's sweeps, cut finely so that bending shows, else our sample."""
-    found = _shapenet(lab, "chair", "chair2", "default")
-    if found is None:
-        sample = _sample("chair")
-        return sample.moved([next((o for part, o in STRETCH.items() if part in n), STAY) for n in sample.points.names])
+    """The chair of the paper's sweeps, cut finely so that bending shows, else one of boxes."""
+    found = _shapenet(lab, "chair", "chair2", "default") or _box_chair()
     x, faces = cut(found.positions, found.faces, 0.2 if lab.quick else 0.05)
     return replace(found, origin=found.origin + ", cut finely", positions=x, faces=faces)
 
@@ -208,6 +214,22 @@ def _sample(name: str) -> Subject:
     return _normalised(
         name, "our generated sample", made.vertices, made.triangles, made.control_points, made.colours, ours=True
     )
+
+
+def _box_chair() -> Subject:
+    """Six boxes that overlap, and ten control points: feet, the legs' upper ends, the back's upper corners."""
+    unit = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    triangles = np.array([[q[0], q[i], q[i + 1]] for q in quads for i in (1, 2)])
+    positions = np.concatenate([np.array(centre) + unit * size for centre, size in BOXES])
+    faces = np.concatenate([triangles + 8 * box for box in range(len(BOXES))])
+    feet = [(x, -0.9, z) for x in (-0.48, 0.48) for z in (-0.41, 0.41)]
+    tops = [(-0.48, 0.95, z) for z in (-0.45, 0.45)]
+    p = np.array([*feet, *((x, 0.0, z) for x, _, z in feet), *tops])
+    offsets = np.zeros_like(p)
+    offsets[:4, 1], offsets[8:, 1] = -STRETCH, STRETCH
+    subject = _normalised("chair", "ours, of six boxes", positions, faces, ControlPoints(p, p + offsets), ours=True)
+    return replace(subject, view=(60.0, 30.0))
 
 
 def _creature(rounds: int) -> Subject:

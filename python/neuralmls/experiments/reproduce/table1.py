@@ -48,7 +48,7 @@ def run(lab: Lab) -> Report:
         )
     )
     if subject.ours:
-        report.missing.append("The paper's airplane ($NEURALMLS_DATA): the numbers here are of our sample.")
+        report.missing += subject.missing
         report.claims.append(_claim("The paper's airplane is not here.", None))
         return report
     _beside_the_paper(lab, subject, found, report)

@@ -54,6 +54,7 @@ def run(lab: Lab) -> Report:
             )
         ],
         tables=[table("All measures.", "network", [*(o for group in found.values() for o in group), classic], SHOWN)],
+        missing=subject.missing,
         numbers={name: {"own_weight": own[name], "measures": numbers(found[name])} for name in series},
         claims=[
             Claim(
