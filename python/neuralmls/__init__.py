@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from neuralmls.control_points import ControlPoints
     from neuralmls.deformer import Deformer
     from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError, NotApplicable
+    from neuralmls.exact import Aim, ExactHandles
     from neuralmls.pipeline import deform
     from neuralmls.placement import farthest_points
     from neuralmls.point_tree import PointTree
@@ -26,10 +27,12 @@ if TYPE_CHECKING:
     from neuralmls.weights.softmax import softmax
 
 __all__ = [
+    "Aim",
     "ArgumentError",
     "ControlPointError",
     "ControlPoints",
     "Deformer",
+    "ExactHandles",
     "FileError",
     "InverseDistanceWeights",
     "NeuralMLSError",
@@ -48,10 +51,12 @@ __all__ = [
 # Which module has which name. They are imported when first asked for: `neuralmls --help` need not wait for numpy.
 # No module may be called like a name that another one gives: importing it would hide that name.
 _HOMES = {
+    "Aim": "exact",
     "ArgumentError": "errors",
     "ControlPointError": "errors",
     "ControlPoints": "control_points",
     "Deformer": "deformer",
+    "ExactHandles": "exact",
     "FileError": "errors",
     "InverseDistanceWeights": "weights",
     "NeuralMLSError": "errors",

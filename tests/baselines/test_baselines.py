@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import pytest
 import neuralmls as nm
 from neuralmls import baselines
 from neuralmls.baselines import checks
+from neuralmls.baselines.biharmonic import weights
 from neuralmls.errors import NeuralMLSError, NotApplicable
 
 from .conftest import bar
@@ -119,6 +121,30 @@ class TestWhatSolversForSurfacesRefuse:
         self.refused(name, a_bar, "both control points 1 and 2", p=p)
 
 
+@pytest.mark.parametrize("thin", [1e-3, 1e-5, 1e-7, 1e-9, 1e-11])
+@pytest.mark.parametrize("name", ON_MESHES)
+def test_badly_conditioned_meshes_are_deformed_within_reason_or_refused(name, thin, shape):
+    vertices, faces = bar()
+    a, b, c = faces[50]
+    sliver = vertices.copy()
+    sliver[c] = (vertices[a] + vertices[b]) / 2 + thin * (vertices[c] - (vertices[a] + vertices[b]) / 2)
+    flat = vertices * [1, thin, 1]
+    for x in (sliver, flat):
+        p = x[[x[:, 0].argmin(), x[:, 0].argmax()]]
+        y = x
+        with suppress(NotApplicable):
+            y = baselines.get(name)(shape(x, faces), p, np.add(p, [[0, 0, 0], [0, 0.3, 0.3]]))
+        assert np.abs(y - x).max() < 1
+
+
+def test_arap_says_when_its_iterations_do_not_settle(a_bar, monkeypatch):
+    import neuralmls.baselines.arap as module
+
+    monkeypatch.setattr(module, "UNSETTLED", 1e-12)
+    with pytest.raises(NotApplicable, match="does not converge: the last 5 of 50 iterations still move a vertex by"):
+        baselines.get("arap")(a_bar, *control_points(lambda p: p * [0.5, 1, 1]))
+
+
 def test_arap_keeps_edges_longer_than_classic_weights_do(a_bar):
     p, q = control_points(lambda p: p + np.array([[0, 0, 0], [-0.2, 0.6, 0], [-0.2, 0.6, 0], [0, 0.1, 0]]))
     sides = a_bar.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).astype(int)
@@ -171,6 +197,9 @@ def test_rbf_refuses_two_control_points_in_one_place(shape):
 def test_biharmonic_weights_stay_between_their_control_points(a_bar):
     p, q = control_points(lambda p: p + np.array([[0, 0, 0], [0, 1, 0], [0, 1, 0], [0, 0, 0]]))
     moved = baselines.get("biharmonic")(a_bar, p, q) - a_bar.positions
+    w = weights(a_bar, p)
+    np.testing.assert_allclose(w.sum(axis=1), 1, atol=1e-12)
+    np.testing.assert_allclose(moved, w @ (q - p), atol=1e-12)
     assert moved[:, 1].min() >= 0
     assert moved[:, 1].max() <= 1 + 1e-12
     assert not moved[:, [0, 2]].any()

@@ -19,6 +19,8 @@
 
 pub mod deformer;
 mod error;
+pub mod exact;
+
 pub mod frame;
 pub mod logits;
 pub mod mls;
@@ -30,6 +32,7 @@ pub mod tree;
 
 pub use deformer::{Deformed, Deformer};
 pub use error::Error;
+pub use exact::{Aim, ExactHandles};
 pub use frame::Frame;
 pub use logits::inverse_distance::InverseDistance;
 pub use logits::neural::{Fit, Layer, Network, Schedule, Training};

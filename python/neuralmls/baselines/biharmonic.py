@@ -53,19 +53,30 @@ def biharmonic(shape: Shape, p: ArrayLike, q: ArrayLike) -> NDArray[np.float64]:
     [[0.0, 0.0, 0.0], [1.0, 0.0, 1.0]]
     """
     x, sources, targets = arguments(METHOD, shape, p, q)
+    w = weights(shape, sources)
+    if np.array_equal(sources, targets):
+        return x.copy()
+    y: NDArray[np.float64] = x + w @ (targets - sources)
+    return y
+
+
+def weights(shape: Shape, p: ArrayLike) -> NDArray[np.float64]:
+    """Return the weights (n, m) alone, which depend on the control points at rest: for a shape that is moved often.
+
+    Parameters and errors as for `biharmonic`.
+    """
+    x, sources, _ = arguments(METHOD, shape, p, p)
     igl = library("igl")
     held = nearest_vertices(METHOD, x, sources)
     faces = clean_mesh(METHOD, shape, held)
-    if np.array_equal(sources, targets):
-        return x.copy()
     centre, half = unit_of(x)
     try:
         raw = igl.bbw((x - centre) / half, faces, held, np.eye(len(held)), max_iter=ROUNDS)
     except RuntimeError as error:
         raise NotApplicable(f"{METHOD} cannot be solved on this mesh: libigl says '{error}'") from error
-    w = np.clip(finite(METHOD, raw), 0.0, 1.0)
+    w: NDArray[np.float64] = np.clip(finite(METHOD, raw), 0.0, 1.0)
     total = w.sum(axis=1, keepdims=True)
     if not (total > 0).all():
         raise NotApplicable(f"{METHOD} finds no weights for a vertex: the mesh is too badly conditioned for it")
-    y: NDArray[np.float64] = x + (w / total) @ (targets - sources)
-    return y
+    w /= total
+    return w

@@ -57,7 +57,7 @@ def kpd(
     ------
     Jakab et al., CVPR 2021.
     """
-    x, sources, targets = arguments("KeypointDeformer", shape, p, q)
+    _, sources, targets = arguments("KeypointDeformer", shape, p, q)
     if network is None:
         raise NotApplicable("KeypointDeformer needs a network trained for the shape's category: a .safetensors file")
     if isinstance(network, str | os.PathLike):
@@ -77,8 +77,6 @@ def kpd(
             f"KeypointDeformer moves its own keypoints, and control point {control[i]} has none nearby: "
             f"the one left for it is {far[i]:.2g} of half of the shape's longest side away"
         )
-    if np.array_equal(sources, targets):
-        return x.copy()
     goals = bound.keypoints.copy()
     goals[keypoint] += targets[control] - sources[control]
     return bound.deform(goals)

@@ -78,6 +78,8 @@ class BoundKeypoints:
             raise ArgumentError(
                 f"targets: expected one for each of {len(self.keypoints)} keypoints, found {len(moved)}"
             )
+        if np.array_equal(moved, self.keypoints):
+            return self._rest.copy()
         offsets = (moved - self.keypoints) / self.scale
         # The displacement alone: w cage is the vertex itself, but for rounding.
         return self._rest + self.scale * (self.coordinates @ (self.influence.T @ offsets))
