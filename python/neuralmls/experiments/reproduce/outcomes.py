@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from neuralmls.deformer import Deformer, Transform
+from neuralmls.deformer import Deformer
 from neuralmls.errors import NotApplicable
 from neuralmls.experiments import methods
 from neuralmls.experiments.methods import Method
@@ -17,6 +17,7 @@ from neuralmls.experiments.reproduce.lab import Lab
 from neuralmls.experiments.reproduce.report import Table
 from neuralmls.experiments.reproduce.subjects import Subject
 from neuralmls.metrics import Measures, measure
+from neuralmls.protocol import Transform
 from neuralmls.weights import Weights
 
 Array = NDArray[np.float64]

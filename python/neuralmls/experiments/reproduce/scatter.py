@@ -44,14 +44,15 @@ def run(lab: Lab) -> Report:
             ax.plot([], [], mark, color="#777777", markerfacecolor="none", label=name)[0]
             for name, mark in {**MARKS, "organic": "*"}.items()
         ]
-        ax.add_artist(ax.legend(handles=by_method, loc=(1.02, 0.72), title="method", alignment="left"))
-        ax.legend(handles=by_shape, loc=(1.02, 0.3), title="shape", alignment="left")
         ax.set(
             xscale="log",
             yscale="log",
             xlabel="mean distance of the control points' nearest vertices from the targets",
             ylabel="mean |Δ mean curvature|",
         )
+        figure = ax.figure
+        figure.legend(handles=by_method, loc="outside right upper", title="method", alignment="left")
+        figure.legend(handles=by_shape, loc="outside right lower", title="shape", alignment="left")
     report.pictures.append(
         Picture(
             "fig6-scatter.png",
