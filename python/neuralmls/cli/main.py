@@ -26,6 +26,7 @@ COMMANDS = (
     "convert-kpd",
     "benchmark",
     "reproduce",
+    "study",
 )
 
 

@@ -8,6 +8,7 @@ use super::adam::{Adam, Rates};
 use super::hidden::{Activations, Hidden};
 use super::initialise::Random;
 use super::network::{relu, Layer, Network};
+use super::piecewise::Prepared;
 use super::{features, gemm};
 use crate::error::{check_number, check_points, Error};
 use crate::frame::Frame;
@@ -305,6 +306,8 @@ impl Trainer {
     }
 
     fn finish(mut self) -> Network {
+        // Laid out, if at all, from the parameters that it had.
+        self.network.prepared = Prepared::default();
         self.hidden.store(&mut self.network.layers[1]);
         self.network
     }
