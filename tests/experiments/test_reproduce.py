@@ -205,3 +205,10 @@ def test_the_command_refuses_an_unknown_item_before_it_makes_a_folder(tmp_path, 
     assert main(["reproduce", "fig99", "-o", str(tmp_path / "new")]) == 2
     assert "no item 'fig99'" in capsys.readouterr().err
     assert not (tmp_path / "new").exists()
+
+
+def test_data_that_is_not_where_it_should_be_is_refused(tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("NEURALMLS_DATA", str(tmp_path / "nowhere"))
+    assert main(["reproduce", "fig7", "-o", str(tmp_path / "new")]) == 1
+    assert "$NEURALMLS_DATA: there is no folder" in capsys.readouterr().err
+    assert not (tmp_path / "new").exists()

@@ -31,7 +31,7 @@ def reproduce(*, items: tuple[str, ...], output: Path, quiet: bool, force: bool)
     from neuralmls.experiments.reproduce.lab import Lab
     from neuralmls.experiments.reproduce.run import NUMBERS, PAGE
 
-    selected = chosen(items or ("all",))
+    selected, lab = chosen(items or ("all",)), Lab.of(output)
     outputs.make_folder(output)
     for name in (PAGE, NUMBERS):
         outputs.check_output(output / name, force=force)
@@ -45,7 +45,7 @@ def reproduce(*, items: tuple[str, ...], output: Path, quiet: bool, force: bool)
     matplotlib_or_refuse()
     library("igl")
     stages = Stages(quiet=quiet)
-    page, reports = run(selected, Lab.of(output), stages.stage)
+    page, reports = run(selected, lab, stages.stage)
     if quiet:
         return
     told = Counter(claim.verdict for report in reports.values() for claim in report.claims)

@@ -6,6 +6,8 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from neuralmls.errors import FileError
+
 
 @dataclass(frozen=True)
 class Lab:
@@ -28,10 +30,17 @@ class Lab:
 
     @classmethod
     def of(cls, folder: Path) -> Lab:
-        """The lab of `$NEURALMLS_DATA` and `$NEURALMLS_GOLDEN`, or of the folder `golden` beside the data."""
-        data = os.environ.get("NEURALMLS_DATA")
-        golden = os.environ.get("NEURALMLS_GOLDEN") or (str(Path(data).parent / "golden") if data else None)
-        return cls(folder, _folder(data), _folder(golden))
+        """The lab of `$NEURALMLS_DATA` and `$NEURALMLS_GOLDEN`, or of the folder `golden` beside the data.
+
+        Raises
+        ------
+        FileError
+            One of them is set, and is no folder.
+        """
+        data, golden = _folder("NEURALMLS_DATA"), _folder("NEURALMLS_GOLDEN")
+        if data is not None and golden is None and (data.resolve().parent / "golden").is_dir():
+            golden = data.resolve().parent / "golden"
+        return cls(folder, data, golden)
 
     def find(self, name: str) -> Path | None:
         """A file of the data folder, or None where it is not there."""
@@ -49,6 +58,9 @@ class Lab:
         return 64 if self.quick else 1024
 
 
-def _folder(name: str | None) -> Path | None:
-    path = Path(name) if name else None
-    return path if path is not None and path.is_dir() else None
+def _folder(variable: str) -> Path | None:
+    """The folder that an environment variable names, or None where it names none."""
+    name = os.environ.get(variable)
+    if name and not Path(name).is_dir():
+        raise FileError(f"${variable}: there is no folder '{name}'")
+    return Path(name) if name else None
