@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from neuralmls.control_points import ControlPoints
+from neuralmls.experiments.published import published
 from neuralmls.experiments.reproduce.lab import Lab
 from neuralmls.samples import make
 from neuralmls.shape import read
@@ -193,20 +193,14 @@ def _normalised(
 
 def _shapenet(lab: Lab, name: str, folder: str, case: str) -> Subject | None:
     """A shape of the paper with its control points, or None where the data is not there."""
-    path, listed = lab.find(f"shapenet/{folder}/model.obj"), lab.find("shapenet/control_points.json")
-    if path is None or listed is None:
+    found = None if lab.data is None else published(lab.data, folder)
+    if found is None:
         return None
-    shape, entry = read(path), json.loads(listed.read_text())[folder]
-    p, offsets = np.array(entry["control_points"]), np.array(entry["offsets"][case])
-    if entry["space"] == "file":
-        low, high = shape.bounds
-        scale = float((high - low).max()) / 2
-        p, offsets = (p - (low + high) / 2) / scale, offsets / scale
+    shape = found.shape
     assert shape.faces is not None
-    unmoved = ControlPoints([[0.0, 0.0, 0.0]])
-    subject = _normalised(name, f"the paper's {folder}", shape.positions, shape.faces.astype(np.int64), unmoved)
-    points = ControlPoints(p, p + offsets, entry["names"])
-    return replace(subject, points=points, view=(60.0, 30.0))
+    faces = shape.faces.astype(np.int64)
+    subject = _normalised(name, f"the paper's {folder}", shape.positions, faces, found.displacements[case])
+    return replace(subject, view=(60.0, 30.0))
 
 
 def _sample(name: str) -> Subject:
