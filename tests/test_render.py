@@ -160,3 +160,12 @@ def test_a_long_title_stays_in_its_panel() -> None:
     page = np.asarray(Image.open(io.BytesIO(drawn)))
     assert (page[:, :160] == 255).all()
     assert (page[:, 160:] < 128).any()
+
+
+def test_panels_fill_rows_from_the_left() -> None:
+    picture = np.zeros((40, 80, 3), dtype=np.uint8)
+    page = np.asarray(Image.open(io.BytesIO(png([picture] * 3, ["", "", ""], 160, columns=2))))
+    dark = (page == 0).all(axis=2)
+    assert dark[:, :80].sum() == 2 * 40 * 80
+    assert dark[:, 80:].sum() == 40 * 80
+    assert not dark[page.shape[0] // 2 :, 80:].any()

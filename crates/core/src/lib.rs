@@ -9,6 +9,7 @@
 //! | [`softmax`] | logits at a temperature -> weights, and the form of them that stays accurate however small T is |
 //! | [`mls`] | weights and moved control points -> a rigid, similarity or affine map a point |
 //! | [`tree`] | a kd-tree over points, built once a shape |
+//! | [`memory`] | large arrays, made by all threads |
 //! | `simd` | one kernel, compiled for several instruction sets |
 //! | [`deformer`] | joins them: points bound to their logits once, deformed many times |
 //!
@@ -23,6 +24,7 @@ pub mod exact;
 
 pub mod frame;
 pub mod logits;
+pub mod memory;
 pub mod mls;
 mod parallel;
 pub mod progress;

@@ -1,5 +1,6 @@
 //! Points bound to their logits.
 
+use neuralmls_core::memory::copy_of;
 use neuralmls_core::Transform;
 use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -41,7 +42,8 @@ impl Deformer {
     ) -> PyResult<Deformer> {
         let dim = x.shape()[1];
         let transform = self::transform(transform)?;
-        let (x, p, logits) = (x.as_slice()?.to_vec(), p.as_slice()?, logits.as_slice()?.to_vec());
+        let (x, p, logits) = (x.as_slice()?, p.as_slice()?, logits.as_slice()?);
+        let (x, logits) = (copy_of(x), copy_of(logits));
         let inner = neuralmls_core::Deformer::new(x, dim, p, logits, transform)
             .map_err(|error| from_core(error, None))?;
         Ok(Deformer { inner, dim })

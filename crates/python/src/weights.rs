@@ -175,7 +175,11 @@ pub(crate) fn fit(
     samples: Option<SampleArrays<'_>>,
 ) -> PyResult<Trained> {
     let (dim, frame) = (p.shape()[1], frame(&centre, half)?);
-    let training = Training { width, schedule: schedule(steps), rate, seed, fourier_sigma };
+    let schedule = match (steps, &samples) {
+        (Some(steps), Some(_)) => Schedule::Cosine(steps),
+        _ => schedule(steps),
+    };
+    let training = Training { width, schedule, rate, seed, fourier_sigma };
     let points = p.as_slice()?;
     let samples = match &samples {
         Some((x, labels, batch)) => {

@@ -38,7 +38,7 @@ def poses(*, folder: Path, methods: str | None, counts: str, json: bool, quiet: 
     """
     from neuralmls.experiments.poses import POSE_METHODS, QUICK
 
-    chosen = list(QUICK) if methods is None else _names(methods, list(POSE_METHODS))
+    chosen = list(QUICK) if methods is None else options.names(methods, POSE_METHODS)
     numbers = _numbers(counts)
     if not folder.is_dir():
         raise FileError(f"{folder}: expected a folder of .npz files")
@@ -110,14 +110,6 @@ def _show(rows: list[dict[str, Any]], names: list[str]) -> None:
         for name, reason in row["not_applicable"].items():
             where = f"{Path(row['file']).stem}, {row['control_points']} control points"
             console.line(f"  {POSE_METHODS[name].title} does not apply to {where}: {reason}", sys.stdout)
-
-
-def _names(text: str, known: list[str]) -> list[str]:
-    names = text.split(",")
-    for name in names:
-        if name not in known:
-            raise ArgumentError(f"--methods: expected names out of {', '.join(known)}, found '{name}'")
-    return names
 
 
 def _numbers(text: str) -> list[int]:

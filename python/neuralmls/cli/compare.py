@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 @click.option(
     "--kpd", metavar="FILE", type=options.PATH, help="KeypointDeformer's weights for such shapes, .safetensors."
 )
+@click.option("--methods", metavar="NAME,...", help="neural,classic,rbf,arap,biharmonic,kpd; all if not given.")
 @click.option("--output", "-o", metavar="FOLDER", type=options.PATH, help="Write each deformed shape into it.")
 @click.option("--picture", type=options.PATH, help="Draw the source and all results, .png.")
 @click.option("--scatter", type=options.PATH, help="Draw distortion against control-point error, .png.")
@@ -36,6 +37,7 @@ def compare(
     shape: Path,
     points: Path,
     kpd: Path | None,
+    methods: str | None,
     output: Path | None,
     picture: Path | None,
     scatter: Path | None,
@@ -54,7 +56,8 @@ def compare(
     """
     from neuralmls.experiments.methods import METHODS
 
-    names = [*METHODS, *(["kpd"] if kpd is not None else [])]
+    known = [*METHODS, *(["kpd"] if kpd is not None else [])]
+    names = known if methods is None else options.names(methods, known)
     inputs = [shape, points, *([kpd] if kpd is not None else [])]
     for file, ending in ((picture, "png"), (scatter, "png"), (csv, "csv")):
         if file is not None:
@@ -72,7 +75,7 @@ def compare(
     from neuralmls.experiments.methods import kpd as kpd_method
     from neuralmls.shape import read
 
-    methods = METHODS | ({"kpd": kpd_method(kpd)} if kpd is not None else {})
+    available = METHODS | ({"kpd": kpd_method(kpd)} if kpd is not None else {})
     stages = Stages(quiet=quiet)
     source, control_points = read(shape), ControlPoints.read(points)
     deformation.check_size(source)
@@ -87,9 +90,9 @@ def compare(
         console.warning(sentence)
     load_libraries()
     results: dict[str, Result] = {}
-    for name, method in methods.items():
+    for name in names:
         with stages.stage(name):
-            results[name] = attempt(method, source, control_points.sources, control_points.targets)
+            results[name] = attempt(available[name], source, control_points.sources, control_points.targets)
     told: dict[str, Any] = {"input": str(shape), "points": str(points), "unit": deformation.longest_side(source) / 2}
     told |= comparison.document(source, results) | {"files": [], "warnings": warnings}
     for name, file in deformed.items():

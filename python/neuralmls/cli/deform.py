@@ -39,6 +39,7 @@ TransformName: TypeAlias = Literal["rigid", "similarity", "affine"]
     multiple=True,
     help="Move a target, from where the file has it; may be repeated.",
 )
+@click.option("--exact", is_flag=True, help="Take the control points all the way to their targets, not only near them.")
 @options.json
 @options.quiet
 @click.option("--verbose", is_flag=True, help="Every control point in the summary.")
@@ -52,6 +53,7 @@ def deform(
     temperature: float,
     transform: TransformName,
     moves: Sequence[str],
+    exact: bool,
     json: bool,
     quiet: bool,
     verbose: bool,
@@ -91,8 +93,11 @@ def deform(
         warnings.append("no control point is moved, so that the output is the input")
     for sentence in warnings:
         console.warning(sentence)
-    result = deformation.deformed(source, control_points, choice, transform, temperature, stages)
-    for sentence in deformation.not_parted(control_points, choice, result):
+    result = deformation.deformed(source, control_points, choice, transform, temperature, stages, exact=exact)
+    sentences = deformation.not_parted(control_points, choice, result)
+    if exact:
+        sentences += deformation.not_arrived(control_points, source, result)
+    for sentence in sentences:
         console.warning(sentence)
         warnings.append(sentence)
     with stages.stage("write"):
@@ -101,7 +106,7 @@ def deform(
         console.warning(sentence)
         warnings.append(sentence)
     told = summary.summary(source, control_points, choice, transform, temperature, result)
-    told |= {"output": str(output), "files": files, "warnings": warnings, "seconds": stages.seconds}
+    told |= {"exact": exact, "output": str(output), "files": files, "warnings": warnings, "seconds": stages.seconds}
     out = sys.stderr if to_stdout else sys.stdout
     if json:
         console.document(told, out)

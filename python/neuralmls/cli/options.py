@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
+
+from neuralmls.errors import ArgumentError
 
 PATH = click.Path(path_type=Path)
 
@@ -27,6 +29,21 @@ def output(help: str) -> Decorator[Any]:
 def points(help: str) -> Decorator[Any]:
     """Return the option that names the file of control points, which the command cannot do without."""
     return click.option("--points", type=PATH, required=True, help=help)
+
+
+def names(text: str, known: Iterable[str]) -> list[str]:
+    """Return the names of `--methods NAME,...`.
+
+    Raises
+    ------
+    ArgumentError
+        One is none of the known ones.
+    """
+    found, expected = text.split(","), list(known)
+    for name in found:
+        if name not in expected:
+            raise ArgumentError(f"--methods: expected names out of {', '.join(expected)}, found '{name}'")
+    return found
 
 
 def temperature(function: Function) -> Function:

@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from neuralmls import baselines
-from neuralmls.deformer import Deformer, Transform
+from neuralmls.deformer import Deformer
+from neuralmls.protocol import Transform
 from neuralmls.weights import NeuralWeights
 
 Array: TypeAlias = NDArray[np.float64]

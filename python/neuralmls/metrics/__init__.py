@@ -1,7 +1,10 @@
 """How good a deformation is: the paper's measures, and robust ones beside them.
 
 All take triangle soups, non-manifold shapes and triangles without area, and say what they left out. `measure` takes
-them all at once, in the paper's units.
+them all at once, in the paper's units. The measures of a surface share their arguments:
+
+`x, y : (n, 3)`, the vertices before and after, in the same units, any; `faces : (f, 3)` integers, the triangles.
+What is no such array, or does not fit the others, is an `ArgumentError` that says what was found.
 """
 
 from neuralmls.metrics.curvature import Change, curvature_change, laplacian, mean_curvature

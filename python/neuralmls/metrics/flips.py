@@ -33,16 +33,6 @@ def flipped_triangles(x: ArrayLike, y: ArrayLike, faces: ArrayLike) -> Flips:
     one, each turned so that it looks the same way before, whatever the winding in the file. It has flipped if
     afterwards the sum of `n_t . n_s` over these neighbours is negative; `n` are normals as long as the areas.
 
-    Parameters
-    ----------
-    x, y : (n, 3), before and after
-    faces : (f, 3) integers
-
-    Raises
-    ------
-    ArgumentError
-        The arrays are no such arrays, or do not fit each other.
-
     Examples
     --------
     >>> fan = np.array([[0, 0, 0], [3, 0, 0], [0, 3, 0], [-3, -3, 0], [1, 1, 0]])

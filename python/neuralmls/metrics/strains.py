@@ -43,19 +43,9 @@ def singular_values(x: ArrayLike, y: ArrayLike, faces: ArrayLike) -> Array:
 
     With `g`, `h` the Gram matrices of two edges before and after, their squares are the eigenvalues of `g^-1 h`.
 
-    Parameters
-    ----------
-    x, y : (n, 3), before and after, in the same units
-    faces : (f, 3) integers
-
     Returns
     -------
     (f, 2) float64, the greater first; NaN for triangles lower than 1e-6 of their longest edge before
-
-    Raises
-    ------
-    ArgumentError
-        The arrays are no such arrays, or do not fit each other.
 
     Examples
     --------
@@ -71,16 +61,6 @@ def strain(x: ArrayLike, y: ArrayLike, faces: ArrayLike) -> Strain:
     """Return how much the triangles are strained from `x` to `y`.
 
     The symmetric Dirichlet energy of a triangle is `s1^2 + s2^2 + 1/s1^2 + 1/s2^2` of its singular values.
-
-    Parameters
-    ----------
-    x, y : (n, 3), before and after, in the same units
-    faces : (f, 3) integers
-
-    Raises
-    ------
-    ArgumentError
-        The arrays are no such arrays, or do not fit each other.
 
     Source
     ------

@@ -14,19 +14,9 @@ def volume(x: ArrayLike, faces: ArrayLike) -> float | None:
 
     It is closed if, vertices in one place taken as one, every edge is walked as often one way as the other.
 
-    Parameters
-    ----------
-    x : (n, 3), in any units
-    faces : (f, 3) integers
-
     Returns
     -------
     float, cubic units of `x`, negative if the triangles look inward; or None
-
-    Raises
-    ------
-    ArgumentError
-        The arrays are no such arrays.
 
     Examples
     --------

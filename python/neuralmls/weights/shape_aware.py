@@ -9,20 +9,23 @@ from numpy.typing import ArrayLike, NDArray
 
 from neuralmls import _core
 from neuralmls.arrays import Progress, as_box, as_count, as_points, box_around
+from neuralmls.errors import ArgumentError
 from neuralmls.weights.network import NetworkWeights
+from neuralmls.weights.softmax import softmax
 from neuralmls.weights.surface_graph import SurfaceGraph
 
 Array = NDArray[np.float64]
 
-# Chosen once, for all shapes, by studies/shape_aware.py.
+# Chosen once, for all shapes, by studies/shape_aware.py; docs/beyond-the-paper.md has the figures.
 EXPONENT = 6.0
-ALONG = 1.0  # of the exponent that belongs to the distance along the shape; the rest to the straight-line distance
-REACH = 0.75  # of the spacing of the control points: as far along the shape as a control point governs it
-SAMPLES = 1024
-BATCH = 128
-WIDTH = 512
-STEPS = 400
-RATE = 2e-3
+REACH = 0.75  # of the spacing of the control points: how far along the shape one governs it
+SOFTNESS = 2.0  # the network learns the weights to the power 1/2: what it gives is then sharpened as much
+SAMPLES = 2048
+BATCH = 128  # of them a step
+WIDTH = 256
+STEPS = 1000
+RATE = 8e-3
+LEAST = 1e-6  # a distance, in halves of the shape's longest side: what is nearer is on the control point
 
 
 class ShapeAwareWeights(NetworkWeights):
@@ -39,47 +42,95 @@ class ShapeAwareWeights(NetworkWeights):
         seed: int = 0,
         progress: Progress | None = None,
     ) -> ShapeAwareWeights:
-        """Train a network to give the weights `1 / (D_i^a E_i^(1 - a))^6` on the shape.
+        """Train a network to give the weights `w_i ~ 1 / (D_i^s E_i^(1 - s))^6` on a shape.
 
-        `E_i` is the straight-line distance from control point i and `D_i` that along the shape: the shortest path over its
-        triangles, between parts that touch or overlap, and where none does, between their nearest points.
+        `E_i` is the straight-line distance from control point i, and `D_i` the distance along the shape: the shortest path
+        over its triangles, across parts that touch or overlap, and from a part that touches none to its nearest. `s` is 1
+        where a control point governs the shape, `D_i` below 3/4 of the control points' spacing for one of them; beyond, where the
+        shape says less and less, `s = (3/4 spacing / min D_i)^4`, and the nearest in space decide.
+
+        Between the samples of the surface, and off it, the weights are what the network makes of them, as smooth as the
+        paper's. The targets are not needed: one fit serves every drag.
+
+        Parameters
+        ----------
+        control_points : (m, d), 1 to 1,000 of them, d = 2 or 3
+        x : (n, d)
+            The shape's points, at least one.
+        faces : (f, 3) integers, optional
+            Its triangles: any, of any quality, connected or not. Points without a triangle are linked to their nearest.
+        bounds : (2, d), optional
+            The shape's box, by which coordinates are normalised; that of `x` if not given.
+        seed : int, 0 to 2^64 - 1
+            The same seed gives the same bytes, whatever the number of threads.
+        progress : callable, optional
+            Told the fraction done, from 0 to 1; what it raises stops the training.
+
+        Raises
+        ------
+        ArgumentError
+            The points are not finite points or none; two control points are in one place; a face names no point.
+        NeuralMLSError
+            SciPy is not installed.
+
+        Source
+        ------
+        The paper's network (Shechter et al. 2022, section 3), taught more: softened labels as in Hinton, Vinyals, Dean,
+        "Distilling the knowledge in a neural network", 2015. Distances by Dijkstra's algorithm (SciPy).
+
+        Examples
+        --------
+        Two legs side by side: the tip of one is near the control point of the other, but belongs to its own.
+
+        >>> legs = np.array([[0.0, 0], [0, 1], [0.1, 1], [0.1, 0]])
+        >>> lines = [[0, 1, 1], [1, 2, 2], [2, 3, 3]]
+        >>> p = [[0, 0.1], [0.1, 0.9]]
+        >>> ShapeAwareWeights.fit(p, legs, lines).logits([[0.1, 0.3]]).argmax()
+        np.int64(1)
         """
         p = as_points("control_points", control_points)
         points = as_points("x", x, p.shape[1])
+        if not len(points):
+            raise ArgumentError("x: expected at least one point, found none")
         as_count("seed", seed, 0, 2**64 - 1)
         centre, half = box_around(points) if bounds is None else as_box(bounds, p.shape[1])
         origin = np.array(centre)
-        samples, labels = taught(
-            (p - origin) / half, (points - origin) / half, None if faces is None else np.asarray(faces)
-        )
+        triangles = None if faces is None else np.asarray(faces)
+        samples, labels = lessons((p - origin) / half, (points - origin) / half, triangles)
         network, losses, loss = _core.fit(
             p, centre, half, WIDTH, STEPS, RATE, seed, None, progress, (samples * half + origin, labels, BATCH)
         )
-        return cls(p, network, losses, loss)
+        return cls(p, _sharpened(network, SOFTNESS), losses, loss)
 
 
-def taught(p: Array, x: Array, faces: NDArray[Any] | None) -> tuple[Array, NDArray[np.float32]]:
-    """Return samples of the shape (k, d) and how likely each control point is to be there, (k, m)."""
+def lessons(p: Array, x: Array, faces: NDArray[Any] | None) -> tuple[Array, NDArray[np.float32]]:
+    """Return what the network is taught: samples of the shape (k, d), and the softened weights there (k, m)."""
     graph = SurfaceGraph(x, faces)
     along = graph.distances(p)
     chosen = graph.spread(SAMPLES)
-    return graph.nodes[chosen], labels(p, graph.nodes[chosen], along[:, chosen].T, spacing(p, along, graph))
+    logits = shape_logits(p, graph.nodes[chosen], along[:, chosen].T, spacing(along[:, graph.nearest(p)])) / SOFTNESS
+    return graph.nodes[chosen], softmax(logits).astype(np.float32)
 
 
-def spacing(p: Array, along: Array, graph: SurfaceGraph) -> float:
-    """Return how far a control point is from its nearest along the shape: the median."""
-    if len(p) == 1:
+def spacing(apart: Array) -> float:
+    """Return how far a control point is from the nearest other one, the median, of distances (m, m)."""
+    if len(apart) == 1:
         return np.inf
-    apart = along[:, graph.nearest(p)]
-    np.fill_diagonal(apart, np.inf)
-    return float(np.median(apart.min(axis=1)))
+    others = np.where(np.eye(len(apart), dtype=bool), np.inf, apart)
+    return float(np.median(others.min(axis=1)))
 
 
-def labels(p: Array, x: Array, along: Array, spacing: float) -> NDArray[np.float32]:
-    """Return the probabilities of the control points (m, d) at points (k, d) that distances along the shape (k, m) give."""
-    straight = np.maximum(np.linalg.norm(x[:, None] - p, axis=2), 1e-6)
+def shape_logits(p: Array, x: Array, along: Array, spacing: float) -> Array:
+    """Return the logits of the control points (m, d) at points (k, d), at distances (k, m) along the shape."""
+    straight = np.maximum(np.linalg.norm(x[:, None] - p, axis=2), LEAST)
     along = np.maximum(along, straight)
-    share = ALONG * np.minimum(1, REACH * spacing / along.min(axis=1, keepdims=True)) ** 4
-    logits = -EXPONENT * (share * np.log(along) + (1 - share) * np.log(straight))
-    weights = np.exp(logits - logits.max(axis=1, keepdims=True))
-    return np.asarray(weights / weights.sum(axis=1, keepdims=True), dtype=np.float32)
+    share = np.minimum(1, REACH * spacing / along.min(axis=1, keepdims=True)) ** 4
+    return np.asarray(-EXPONENT * (share * np.log(along) + (1 - share) * np.log(straight)))
+
+
+def _sharpened(network: _core.Network, by: float) -> _core.Network:
+    """The network with logits times a number."""
+    layers = network.layers
+    weight, bias = layers[2]
+    layers[2] = (weight * np.float32(by), bias * np.float32(by))
+    return _core.Network(network.dim, network.centre, network.half, network.frequencies, layers)

@@ -24,6 +24,12 @@ pub(crate) trait Lanes: Copy {
     fn splat(value: f32) -> Self;
     fn load(from: &[f32; WIDTH]) -> Self;
     fn store(self) -> [f32; WIDTH];
+    /// Writes the first lanes, as many as there is room for.
+    #[inline(always)]
+    fn store_first(self, to: &mut [f32]) {
+        let count = to.len().min(WIDTH);
+        to[..count].copy_from_slice(&self.store()[..count]);
+    }
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
@@ -42,6 +48,8 @@ pub(crate) trait Lanes: Copy {
     fn permute(self, places: Self::Places) -> Self;
     /// The lanes where `self < other`.
     fn less(self, other: Self) -> Self::Mask;
+    /// The lanes of the mask as bits, the first lane in the lowest.
+    fn bits(mask: Self::Mask) -> u32;
     /// `yes` in the lanes of the mask, `no` in the others.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
@@ -149,6 +157,10 @@ impl Lanes for Portable {
     #[inline(always)]
     fn less(self, other: Self) -> Self::Mask {
         std::array::from_fn(|l| self.0[l] < other.0[l])
+    }
+    #[inline(always)]
+    fn bits(mask: Self::Mask) -> u32 {
+        mask.iter().rev().fold(0, |bits, lane| 2 * bits + u32::from(*lane))
     }
     #[inline(always)]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
@@ -262,6 +274,11 @@ mod x86 {
             }
         }
         #[inline(always)]
+        fn bits(mask: Self::Mask) -> u32 {
+            // SAFETY: as above.
+            unsafe { (_mm256_movemask_ps(mask.0) | _mm256_movemask_ps(mask.1) << 8) as u32 }
+        }
+        #[inline(always)]
         fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
             // SAFETY: as above.
             unsafe { Avx2(_mm256_blendv_ps(no.0, yes.0, mask.0), _mm256_blendv_ps(no.1, yes.1, mask.1)) }
@@ -301,6 +318,12 @@ mod x86 {
             to
         }
         #[inline(always)]
+        fn store_first(self, to: &mut [f32]) {
+            let mask = ((1u32 << to.len().min(WIDTH)) - 1) as __mmask16;
+            // SAFETY: as above; where the mask is set there is room.
+            unsafe { _mm512_mask_storeu_ps(to.as_mut_ptr(), mask, self.0) }
+        }
+        #[inline(always)]
         fn abs(self) -> Self {
             // SAFETY: as above.
             unsafe { Avx512(_mm512_abs_ps(self.0)) }
@@ -319,6 +342,10 @@ mod x86 {
         fn less(self, other: Self) -> Self::Mask {
             // SAFETY: as above.
             unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn bits(mask: Self::Mask) -> u32 {
+            u32::from(mask)
         }
         #[inline(always)]
         fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {

@@ -4,10 +4,13 @@
 //! Where it differs from the paper: by default it does not stop after a fixed 48 steps but when every control point has most
 //! of the weight at its own place, because handles that do not own their place do not arrive at their targets.
 
+use std::f64::consts::PI;
+
 use super::adam::{Adam, Rates};
 use super::hidden::{Activations, Hidden};
 use super::initialise::Random;
 use super::network::{relu, Layer, Network};
+use super::piecewise::Prepared;
 use super::samples::{sorted, Lessons, Samples};
 use super::{features, gemm};
 use crate::error::{check_number, check_points, Error};
@@ -16,6 +19,8 @@ use crate::progress::{report, Progress};
 
 /// A control point owns its place when its cross-entropy there is at most this: 0.9 of the weight.
 const SMALL_LOSS: f64 = 0.105;
+/// How much faster neurons that begin at samples change than others.
+const GAIN: f32 = 4.0;
 /// Most control points: beyond, every layer of the paper's network is too small for them.
 const MOST_CONTROL_POINTS: usize = 1000;
 
@@ -30,6 +35,8 @@ pub enum Schedule {
     },
     /// Exactly so many, the last fifth of them at a tenth of the rate: 48 in the paper.
     Fixed(usize),
+    /// Exactly so many, the rate falling to 0 as half a cosine does.
+    Cosine(usize),
 }
 
 /// How to make and train a network.
@@ -72,8 +79,10 @@ pub struct Fit {
 
 /// Makes a network from a seed and trains it on the control points `p`, and on `samples` of a shape where there are any.
 ///
-/// With samples, the schedule is one of fixed steps, each of which sees all of the control points and a batch of the samples;
-/// the losses are those of a batch. The result does not depend on the order of the control points (but that its outputs are in their order), nor on the number of
+/// With samples, each step sees all of the control points and a batch of the samples; the losses are those of a batch, and the
+/// first layer's neurons begin where the samples are ([`bend_at`]).
+///
+/// The result does not depend on the order of the control points (but that its outputs are in their order), nor on the number of
 /// threads.
 ///
 /// # Errors
@@ -92,6 +101,11 @@ pub fn fit(
         let found = training.width;
         return Err(Error::argument("width", format!("expected 1 to 16384 neurons, found {found}")));
     }
+    let (p, order) = sorted(p, dim);
+    let mut lessons = Lessons::of_control_points(&p, dim);
+    if let Some(samples) = samples {
+        lessons = lessons.with(samples, dim, &order, training.seed)?;
+    }
     let mut random = Random::new(training.seed);
     let frequencies = match training.fourier_sigma {
         Some(sigma) => {
@@ -100,18 +114,33 @@ pub fn fit(
         }
         None => Vec::new(),
     };
-    let (inputs, width, m) = (features::width(dim, &frequencies), training.width, p.len() / dim);
-    let layers = [random.layer(inputs, width), random.layer(width, width), random.layer(width, m)];
+    let (inputs, width, m) = (features::width(dim, &frequencies), training.width, order.len());
+    let mut layers = [random.layer(inputs, width), random.layer(width, width), random.layer(width, m)];
+    if let Some(samples) = samples {
+        bend_at(&mut layers[0], samples.x, dim, &frame);
+    }
     let network = Network::new(dim, frame, frequencies, layers)?;
 
-    let (p, order) = sorted(p, dim);
-    let mut lessons = Lessons::of_control_points(&p, dim);
-    if let Some(samples) = samples {
-        lessons = lessons.with(samples, dim, &order, training.seed)?;
-    }
     let mut fit = teach(network, lessons, training.schedule, training.rate, progress)?;
     fit.network.layers[2] = in_order(&fit.network.layers[2], &order);
     Ok(fit)
+}
+
+/// Makes neurons of the first layer bend where the points `x` are, and more than `torch.nn.Linear`'s: `W_j (x - x_k)`, W
+/// times [`GAIN`]. Random biases bend many of them where there is no shape, and a shape's labels change faster than the whole.
+///
+/// Where Fourier features are the inputs, it does nothing.
+fn bend_at(layer: &mut Layer, x: &[f64], dim: usize, frame: &Frame) {
+    let count = x.len() / dim;
+    if layer.inputs() != dim || count == 0 {
+        return;
+    }
+    layer.weight.iter_mut().for_each(|weight| *weight *= GAIN);
+    for (j, (weights, bias)) in layer.weight.chunks_exact(dim).zip(&mut layer.bias).enumerate() {
+        let point = &x[j % count * dim..][..dim];
+        let value = |k: usize| f64::from(weights[k]) * (point[k] - frame.centre[k]) / frame.half;
+        *bias = -(0..dim).map(value).sum::<f64>() as f32;
+    }
 }
 
 /// Trains a given network on the control points `p`.
@@ -147,7 +176,7 @@ fn teach(
     let one = network.outputs() == 1;
     let most = match schedule {
         Schedule::UntilSmall { at_most } => at_most,
-        Schedule::Fixed(steps) => steps,
+        Schedule::Fixed(steps) | Schedule::Cosine(steps) => steps,
     };
     if !(1..=1_000_000).contains(&most) {
         return Err(Error::argument("steps", format!("expected 1 to 1000000, found {most}")));
@@ -169,7 +198,11 @@ fn teach(
             break mean;
         }
         losses.push(mean);
-        trainer.step(if step < slow_from { rate } else { 0.1 * rate });
+        trainer.step(match schedule {
+            Schedule::Cosine(_) => 0.5 * rate * (1.0 + (PI * step as f64 / end as f64).cos()),
+            _ if step < slow_from => rate,
+            _ => 0.1 * rate,
+        });
     };
     report(progress, 1.0)?;
     Ok(Fit { network: trainer.finish(), losses, loss })
@@ -339,6 +372,8 @@ impl Trainer {
     }
 
     fn finish(mut self) -> Network {
+        // Laid out, if at all, from the parameters that it had.
+        self.network.prepared = Prepared::default();
         self.hidden.store(&mut self.network.layers[1]);
         self.network
     }
