@@ -181,7 +181,9 @@ def octopus(rng: np.random.Generator) -> Skeleton:
     for arm in range(8):
         angle = 2 * np.pi * arm / 8 + u(-0.1, 0.1)
         out = np.array([np.cos(angle), np.sin(angle), 0])
-        joints = [np.array([0, 0, 0.22]) + out * (0.12 + 0.17 * step) - [0, 0, drop * 0.04 * step**1.5] for step in range(6)]
+        joints = [
+            np.array([0, 0, 0.22]) + out * (0.12 + 0.17 * step) - [0, 0, drop * 0.04 * step**1.5] for step in range(6)
+        ]
         s.chain(head, joints, (0.085, 0.035), 25)
     return s
 
@@ -209,7 +211,13 @@ def chair(rng: np.random.Generator) -> Skeleton:
     width, depth, height = u(0.4, 0.6), u(0.4, 0.6), u(0.4, 0.6)
     leg = u(0.025, 0.04)
     seat = s.add(-1, (-depth / 2, 0, height), (depth / 2, 0, height), (0.03, width / 2), 5)
-    s.add(seat, (depth / 2 - 0.03, 0, height + 0.01), (depth / 2 + u(0, 0.1), 0, height + u(0.4, 0.7)), (0.025, width / 2), 25)
+    s.add(
+        seat,
+        (depth / 2 - 0.03, 0, height + 0.01),
+        (depth / 2 + u(0, 0.1), 0, height + u(0.4, 0.7)),
+        (0.025, width / 2),
+        25,
+    )
     for x in (-1, 1):
         for y in (-1, 1):
             top = np.array([x * (depth / 2 - leg * 1.5), y * (width / 2 - leg * 1.5), height])
@@ -239,4 +247,6 @@ def creature(kind: str, seed: int, poses: int = 4, bend: float = BEND) -> Poses:
     skeleton = make(rng)
     rest = surface(skeleton)
     skin = skeleton.skin(rest.positions) if surface is level_set else _stiff(skeleton, rest)
-    return Poses(f"{kind} {seed}", rest, np.stack([skeleton.pose(rest.positions, skin, rng, bend) for _ in range(poses)]))
+    return Poses(
+        f"{kind} {seed}", rest, np.stack([skeleton.pose(rest.positions, skin, rng, bend) for _ in range(poses)])
+    )

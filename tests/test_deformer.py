@@ -165,8 +165,14 @@ def test_other_threads_run_during_a_long_call():
             {"weights": nm.InverseDistanceWeights([[9.0, 0.0, 0.0]])},
             "weights: expected a weight function of the control",
         ),
-        ({"weights": "magic"}, "weights: expected 'neural', 'inverse-distance' or a weight function, found 'magic'"),
-        ({"weights": None}, "weights: expected 'neural', 'inverse-distance' or a weight function, found None"),
+        (
+            {"weights": "magic"},
+            "weights: expected 'neural', 'shape-aware', 'inverse-distance' or a weight function, found 'magic'",
+        ),
+        (
+            {"weights": None},
+            "weights: expected 'neural', 'shape-aware', 'inverse-distance' or a weight function, found None",
+        ),
         ({"transform": "bend"}, "transform: expected 'rigid', 'similarity' or 'affine', found 'bend'"),
         ({"transform": None}, "transform: expected 'rigid', 'similarity' or 'affine', found None"),
         ({"seed": -1}, "seed: expected a whole number from 0"),

@@ -16,7 +16,7 @@ from neuralmls.errors import ControlPointError, FileError
 from neuralmls.exact import ExactHandles
 from neuralmls.protocol import Transform
 from neuralmls.shape import Shape
-from neuralmls.weights import InverseDistanceWeights, NeuralWeights, softmax
+from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, softmax
 
 LARGEST = 1e150  # units
 # A control point with less of the weight at its own place shares it; the training aims at 0.9.
@@ -31,7 +31,7 @@ class Deformation:
 
     positions: Floats
     maps: NDArray[np.float64] | None
-    weights: NeuralWeights | InverseDistanceWeights
+    weights: NeuralWeights | ShapeAwareWeights | InverseDistanceWeights
     missed: NDArray[np.float64]
 
 
@@ -89,7 +89,7 @@ def deformed(
 ) -> Deformation:
     """Fit the weights, bind the shape to them, and move the control points near their targets, or onto them."""
     with stages.stage(choice.stage) as report:
-        weights = choice.make(points.sources, shape.bounds, report)
+        weights = choice.make(points.sources, shape, report)
     with stages.stage("bind") as report:
         deformer = Deformer(shape.positions, weights, transform=transform, progress=report)
     with stages.stage("move") as report:

@@ -93,7 +93,7 @@ def _weights_of(
         raise ArgumentError(f"--heat: there is no control point '{name}'; the nearest name is '{nearest}'")
     check_size(shape)
     with stages.stage(choice.stage) as report:
-        function = choice.make(points.sources, shape.bounds, report)
+        function = choice.make(points.sources, shape, report)
     with stages.stage("bind") as report:
         return softmax(function.logits(shape.positions, progress=report), temperature)[:, points.names.index(name)]
 

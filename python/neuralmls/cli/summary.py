@@ -13,7 +13,7 @@ from neuralmls.cli.weights import WeightsChoice
 from neuralmls.control_points import ControlPoints
 from neuralmls.protocol import Transform
 from neuralmls.shape import Shape
-from neuralmls.weights import NeuralWeights
+from neuralmls.weights import InverseDistanceWeights
 
 MOST = 20  # control points in a summary, unless all are asked for
 
@@ -29,7 +29,7 @@ def summary(
     """What was done, lengths in file units. The caller adds the output and the seconds."""
     weights: dict[str, Any] = {"kind": choice.kind}
     function = result.weights
-    if isinstance(function, NeuralWeights):
+    if not isinstance(function, InverseDistanceWeights):
         weights |= {"loss": function.loss, "steps": function.steps, "seed": choice.seed or 0}
     else:
         weights |= {"alpha": function.alpha, "epsilon": function.epsilon}
@@ -88,8 +88,8 @@ def show(told: dict[str, Any], *, everything: bool, file: TextIO) -> None:
 
 
 def _weights(weights: dict[str, Any]) -> str:
-    if weights["kind"] == "neural":
-        return f"neural, loss {weights['loss']:.3g} after {weights['steps']:,} steps, seed {weights['seed']}"
+    if weights["kind"] != "inverse-distance":
+        return f"{weights['kind']}, loss {weights['loss']:.3g} after {weights['steps']:,} steps, seed {weights['seed']}"
     return f"inverse-distance, alpha {weights['alpha']:g}, epsilon {weights['epsilon']:g}"
 
 

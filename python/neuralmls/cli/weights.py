@@ -16,9 +16,16 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from neuralmls.weights import InverseDistanceWeights, NeuralWeights
+    from neuralmls.shape import Shape
+    from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights
 
-Kind: TypeAlias = Literal["neural", "inverse-distance"]
+Kind: TypeAlias = Literal["neural", "shape-aware", "inverse-distance"]
+
+PARAMETERS: dict[Kind, tuple[str, ...]] = {
+    "neural": ("width", "steps", "seed"),
+    "shape-aware": ("seed",),
+    "inverse-distance": ("alpha", "epsilon"),
+}
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -27,7 +34,7 @@ _OPTIONS = (
         "--weights",
         type=click.Choice(get_args(Kind)),
         default="neural",
-        help="Learned from the control points, or the classic ones.",
+        help="Learned from the control points, from the shape too, or the classic ones.",
     ),
     options.temperature,
     click.option("--alpha", type=float, help="Inverse-distance: exponent of the squared distance; 1 if not given."),
@@ -39,7 +46,7 @@ _OPTIONS = (
     ),
     click.option("--width", type=int, help="Neural: neurons of a hidden layer; 1024 if not given."),
     click.option("--steps", type=int, help="Neural: steps of the training; until the loss is small if not given."),
-    click.option("--seed", type=int, help="Neural: seed of the training; 0 if not given."),
+    click.option("--seed", type=int, help="Neural, shape-aware: seed of the training; 0 if not given."),
 )
 
 
@@ -63,7 +70,7 @@ class WeightsChoice:
     Raises
     ------
     ArgumentError
-        A parameter belongs to the other kind.
+        A parameter belongs to another kind.
     """
 
     kind: Kind
@@ -74,19 +81,15 @@ class WeightsChoice:
     seed: int | None = None
 
     def __post_init__(self) -> None:
-        other, names = (
-            ("inverse-distance", ("alpha", "epsilon"))
-            if self.kind == "neural"
-            else ("neural", ("width", "steps", "seed"))
-        )
-        for name in names:
-            if getattr(self, name) is not None:
-                raise ArgumentError(f"--{name} belongs to --weights {other}, but the weights are {self.kind}")
+        for kind, names in PARAMETERS.items():
+            for name in names:
+                if getattr(self, name) is not None and name not in PARAMETERS[self.kind]:
+                    raise ArgumentError(f"--{name} belongs to --weights {kind}, but the weights are {self.kind}")
 
     @property
     def stage(self) -> str:
         """The name of the stage in which they are made."""
-        return "train" if self.kind == "neural" else "bind"
+        return "bind" if self.kind == "inverse-distance" else "train"
 
     def check(self) -> None:
         """Refuse parameters out of their range, before anything is read.
@@ -104,21 +107,27 @@ class WeightsChoice:
         InverseDistanceWeights([[0.0]], **self._options("alpha", "epsilon"))
 
     def make(
-        self, sources: NDArray[np.float64], bounds: NDArray[np.float64], progress: Callable[[float], None]
-    ) -> NeuralWeights | InverseDistanceWeights:
+        self, sources: NDArray[np.float64], shape: Shape, progress: Callable[[float], None]
+    ) -> NeuralWeights | ShapeAwareWeights | InverseDistanceWeights:
         """Train the network, or set up the classic weights.
 
         Raises
         ------
         ArgumentError
             A parameter is out of its range.
+        NeuralMLSError
+            Shape-aware weights need SciPy, and it is not installed.
         """
-        from neuralmls.weights import InverseDistanceWeights, NeuralWeights
+        from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights
 
+        given = self._options(*PARAMETERS[self.kind])
         if self.kind == "neural":
-            training = self._options("width", "steps", "seed")
-            return NeuralWeights.fit(sources, bounds=bounds, progress=progress, **training)
-        return InverseDistanceWeights(sources, bounds=bounds, **self._options("alpha", "epsilon"))
+            return NeuralWeights.fit(sources, bounds=shape.bounds, progress=progress, **given)
+        if self.kind == "shape-aware":
+            return ShapeAwareWeights.fit(
+                sources, shape.positions, shape.faces, bounds=shape.bounds, progress=progress, **given
+            )
+        return InverseDistanceWeights(sources, bounds=shape.bounds, **given)
 
     def _options(self, *names: str) -> dict[str, Any]:
         """The parameters of these names that the person gave."""

@@ -1,7 +1,7 @@
 """The methods that experiments compare, each under one name and with one way to call it.
 
 >>> list(METHODS)
-['neural', 'classic', 'rbf', 'arap', 'biharmonic']
+['neural', 'shape-aware', 'classic', 'rbf', 'arap', 'biharmonic']
 >>> square = Surface(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]]))
 >>> METHODS["classic"](square, square.positions, square.positions + 1).tolist()[0]
 [1.0, 1.0, 1.0]
@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from neuralmls import baselines
 from neuralmls.deformer import Deformer
 from neuralmls.protocol import Transform
-from neuralmls.weights import NeuralWeights
+from neuralmls.weights import NeuralWeights, ShapeAwareWeights, Weights
 
 Array: TypeAlias = NDArray[np.float64]
 SpaceMap: TypeAlias = Callable[[Array], Array]
@@ -76,16 +76,20 @@ def neural(
 ) -> Method:
     """The paper's weights, with the options of `Deformer` and of `NeuralWeights.fit` (steps, width, seed, ...)."""
 
-    def space(shape: Geometry, p: ArrayLike, q: ArrayLike) -> SpaceMap:
+    def fitted(shape: Geometry, p: ArrayLike) -> Weights:
         bounds = np.stack([shape.positions.min(axis=0), shape.positions.max(axis=0)])
-        weights = NeuralWeights.fit(p, bounds=bounds, **training)
+        return NeuralWeights.fit(p, bounds=bounds, **training)
 
-        def deformed(x: Array) -> Array:
-            return np.asarray(Deformer(x, weights, transform=transform).deform(q, temperature), dtype=np.float64)
+    return _of_weights(title, fitted, transform, temperature)
 
-        return deformed
 
-    return Method(title, lambda shape, p, q: space(shape, p, q)(shape.positions), space)
+def shape_aware(title: str = "Shape-aware, exact", *, seed: int = 0) -> Method:
+    """Weights that know the shape, and control points that arrive."""
+
+    def fitted(shape: Geometry, p: ArrayLike) -> Weights:
+        return ShapeAwareWeights.fit(p, shape.positions, shape.faces, seed=seed)
+
+    return _of_weights(title, fitted, adherence=1.0)
 
 
 def classic(title: str = baselines.TITLES["classic"], **options: Any) -> Method:
@@ -108,6 +112,27 @@ def kpd(path: str | os.PathLike[str], title: str = baselines.TITLES["kpd"]) -> M
     return _of_vertices(title, "kpd", network=KeypointDeformer.read(path))
 
 
+def _of_weights(
+    title: str,
+    fitted: Callable[[Geometry, ArrayLike], Weights],
+    transform: Transform = "rigid",
+    temperature: float = 1.0,
+    adherence: float = 0.0,
+) -> Method:
+    """Moving least squares with weights that are fitted to the shape and its control points."""
+
+    def space(shape: Geometry, p: ArrayLike, q: ArrayLike) -> SpaceMap:
+        weights = fitted(shape, p)
+
+        def deformed(x: Array) -> Array:
+            y = Deformer(x, weights, transform=transform).deform(q, temperature, adherence=adherence)
+            return np.asarray(y, dtype=np.float64)
+
+        return deformed
+
+    return Method(title, lambda shape, p, q: space(shape, p, q)(shape.positions), space)
+
+
 def _of_vertices(title: str, name: str, **options: Any) -> Method:
     """A baseline that looks at the shape as a whole."""
     return Method(title, lambda shape, p, q: baselines.get(name)(shape, p, q, **options))
@@ -124,6 +149,7 @@ def _of_space(title: str, name: str, **options: Any) -> Method:
 
 METHODS: dict[str, Method] = {
     "neural": neural(),
+    "shape-aware": shape_aware(),
     "classic": classic(),
     "rbf": _of_space(baselines.TITLES["rbf"], "rbf"),
     "arap": _of_vertices(baselines.TITLES["arap"], "arap"),

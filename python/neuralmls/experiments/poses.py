@@ -29,7 +29,7 @@ POSE_METHODS: dict[str, Method] = METHODS | {
     "neural": neural("NeuralMLS, 200 steps", steps=200),
 }
 
-QUICK = ("rbf", "classic", "neural", "arap")  # biharmonic weights take ten times as long
+QUICK = ("rbf", "classic", "neural", "shape-aware", "arap")  # biharmonic weights take ten times as long
 
 
 @dataclass(frozen=True)

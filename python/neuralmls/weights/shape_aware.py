@@ -120,12 +120,14 @@ def spacing(apart: Array) -> float:
     return float(np.median(others.min(axis=1)))
 
 
-def shape_logits(p: Array, x: Array, along: Array, spacing: float) -> Array:
+def shape_logits(
+    p: Array, x: Array, along: Array, spacing: float, *, exponent: float = EXPONENT, reach: float = REACH
+) -> Array:
     """Return the logits of the control points (m, d) at points (k, d), at distances (k, m) along the shape."""
     straight = np.maximum(np.linalg.norm(x[:, None] - p, axis=2), LEAST)
     along = np.maximum(along, straight)
-    share = np.minimum(1, REACH * spacing / along.min(axis=1, keepdims=True)) ** 4
-    return np.asarray(-EXPONENT * (share * np.log(along) + (1 - share) * np.log(straight)))
+    share = np.minimum(1, reach * spacing / along.min(axis=1, keepdims=True)) ** 4
+    return np.asarray(-exponent * (share * np.log(along) + (1 - share) * np.log(straight)))
 
 
 def _sharpened(network: _core.Network, by: float) -> _core.Network:

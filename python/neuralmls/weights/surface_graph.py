@@ -8,20 +8,23 @@ points, and vertices without a face, are linked to their nearest neighbours.
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from neuralmls.errors import ArgumentError, NeuralMLSError
+from neuralmls.placement import farthest_of
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-SPACING = 0.05  # longest edge, in halves of the shape's longest side
-TOUCH = 0.6 * SPACING  # parts nearer than this touch
+SPACING = 0.06  # longest edge, in halves of the shape's longest side
+TOUCH = 0.5 * SPACING  # parts nearer than this touch
 MOST = 40_000  # nodes: long edges are no longer halved beyond
 NEIGHBOURS = 8  # of a point of a cloud
+MOST_SPREAD = 8192  # nodes that `spread` chooses from: every so many-th of more
 NEAREST = 16  # nodes looked at for another part that touches
 
 
@@ -45,14 +48,14 @@ class SurfaceGraph:
     --------
     >>> horseshoe = np.array([[0.0, 0], [0, 1], [0.04, 1], [0.04, 0]])
     >>> graph = SurfaceGraph(horseshoe, np.array([[0, 1, 1], [1, 2, 2], [2, 3, 3]]))
-    >>> graph.distances(horseshoe[:1])[0, -1].round(6)   # not 0.04
+    >>> graph.distances(horseshoe[:1])[0, graph.nearest(horseshoe)[3]].round(1)   # not 0.04
+    np.float64(2.0)
     """
 
     def __init__(self, x: Array, faces: NDArray[Any] | None) -> None:
-        scipy_sparse()  # Says so now if SciPy is missing.
         self.nodes, triangles = _merged(x, faces)
         self.nodes, triangles = _divided(self.nodes, triangles)
-        links = [_edges(triangles), _flaps(triangles)]
+        links = [_two_steps(_edges(triangles), len(self.nodes))]
         loose = np.setdiff1d(np.arange(len(self.nodes)), triangles)
         links.append(_neighbours(self.nodes, loose))
         self._links = np.concatenate(links)
@@ -65,8 +68,6 @@ class SurfaceGraph:
 
         A point off the shape starts from the nodes nearest to it, all that are at most half as far again as the nearest.
         """
-        from scipy.sparse.csgraph import dijkstra
-
         count, m = len(self.nodes), len(p)
         near, far = _tree(self.nodes).query(p, k=min(64, count))[::-1]
         near, far = near.reshape(m, -1), far.reshape(m, -1)
@@ -75,7 +76,7 @@ class SurfaceGraph:
         links = np.concatenate([self._links, self._links[:, ::-1], starts])
         ends = np.concatenate([self.nodes, p])
         graph = self._matrix(links, np.linalg.norm(ends[links[:, 0]] - ends[links[:, 1]], axis=1), count + m)
-        return np.asarray(dijkstra(graph, indices=np.arange(count, count + m))[:, :count])
+        return np.asarray(scipy("sparse.csgraph").dijkstra(graph, indices=np.arange(count, count + m))[:, :count])
 
     def nearest(self, x: Array) -> Indices:
         """Return the node nearest to each of the points (k, d)."""
@@ -83,21 +84,13 @@ class SurfaceGraph:
 
     def spread(self, count: int) -> Indices:
         """Return nodes spread evenly over the shape, `count` or all of them."""
-        if count >= len(self.nodes):
-            return np.arange(len(self.nodes))
-        distance, chosen = np.full(len(self.nodes), np.inf), [0]
-        while len(chosen) < count:
-            away = self.nodes - self.nodes[chosen[-1]]
-            np.minimum(distance, np.einsum("ij,ij->i", away, away), out=distance)
-            chosen.append(int(distance.argmax()))
-        return np.array(chosen)
+        few = np.arange(0, len(self.nodes), -(-len(self.nodes) // MOST_SPREAD))
+        return np.asarray(few[farthest_of(self.nodes[few], count)])
 
     def _parts(self) -> NDArray[np.int32]:
         """The number of the connected part of each node, the largest part being 0."""
-        from scipy.sparse.csgraph import connected_components
-
         graph = self._matrix(self._links, np.ones(len(self._links)), len(self.nodes))
-        parts = connected_components(graph, directed=False)[1]
+        parts = scipy("sparse.csgraph").connected_components(graph, directed=False)[1]
         order = np.argsort(np.argsort(-np.bincount(parts), kind="stable"), kind="stable")
         return np.asarray(order[parts], dtype=np.int32)
 
@@ -105,11 +98,11 @@ class SurfaceGraph:
         """As a sparse matrix; of links given twice, once."""
         keys, first = np.unique(links[:, 0] * count + links[:, 1], return_index=True)
         lengths = np.maximum(lengths[first], 1e-12)  # a zero would be no link
-        return scipy_sparse().csr_array((lengths, (keys // count, keys % count)), shape=(count, count))
+        return scipy("sparse").csr_array((lengths, (keys // count, keys % count)), shape=(count, count))
 
 
-def scipy_sparse() -> Any:
-    """Return `scipy.sparse`.
+def scipy(module: str) -> Any:
+    """Return a module of SciPy.
 
     Raises
     ------
@@ -117,18 +110,15 @@ def scipy_sparse() -> Any:
         SciPy is not installed.
     """
     try:
-        import scipy.sparse
+        return import_module(f"scipy.{module}")
     except ImportError as error:
         raise NeuralMLSError(
             "shape-aware weights need SciPy, which is not installed: pip install 'neuralmls[shape-aware]'"
         ) from error
-    return scipy.sparse
 
 
 def _tree(nodes: Array) -> Any:
-    from scipy.spatial import cKDTree
-
-    return cKDTree(nodes)
+    return scipy("spatial").cKDTree(nodes)
 
 
 def _merged(x: Array, faces: NDArray[Any] | None) -> tuple[Array, Indices]:
@@ -140,9 +130,7 @@ def _merged(x: Array, faces: NDArray[Any] | None) -> tuple[Array, Indices]:
     if triangles.ndim != 2 or triangles.shape[1] != 3 or triangles.dtype.kind not in "iu":
         raise ArgumentError(f"faces: expected an (f, 3) array of integers, found {triangles.dtype} {triangles.shape}")
     if triangles.min() < 0 or triangles.max() >= len(x):
-        raise ArgumentError(
-            f"faces: expected vertices 0 to {len(x) - 1}, found {triangles.min()} to {triangles.max()}"
-        )
+        raise ArgumentError(f"faces: expected vertices 0 to {len(x) - 1}, found {triangles.min()} to {triangles.max()}")
     return nodes, which.reshape(-1)[triangles].astype(np.int64)
 
 
@@ -168,12 +156,12 @@ def _edges(faces: Indices) -> Indices:
     return np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
 
 
-def _flaps(faces: Indices) -> Indices:
-    """The opposite corners of triangles with a common edge: with them, paths need not zigzag."""
-    edges, opposite = np.sort(_edges(faces), axis=1), faces[:, [2, 0, 1]].T.reshape(-1)
-    order = np.lexsort(edges.T)
-    same = (edges[order[1:]] == edges[order[:-1]]).all(axis=1)
-    return np.stack([opposite[order[:-1][same]], opposite[order[1:][same]]], axis=1)
+def _two_steps(links: Indices, count: int) -> Indices:
+    """The links, and one between the ends of each two in succession: with them, paths need not zigzag."""
+    both = np.concatenate([links, links[:, ::-1]])
+    steps = scipy("sparse").csr_array((np.ones(len(both), dtype=np.int32), both.T), shape=(count, count))
+    two = scipy("sparse").triu(steps @ steps + steps, k=1)
+    return np.stack(two.nonzero(), axis=1).astype(np.int64)
 
 
 def _neighbours(nodes: Array, loose: Indices) -> Indices:
@@ -191,7 +179,7 @@ def _touching(nodes: Array, parts: NDArray[np.int32]) -> Indices:
         return np.empty((0, 2), dtype=np.int64)
     far, near = _tree(nodes).query(nodes, k=min(NEAREST, len(nodes)), distance_upper_bound=TOUCH)
     found = np.isfinite(far)
-    found[found] = (parts[near[found]] != np.broadcast_to(parts[:, None], near.shape)[found])
+    found[found] = parts[near[found]] != np.broadcast_to(parts[:, None], near.shape)[found]
     return np.stack([np.nonzero(found)[0], near[found]], axis=1)
 
 

@@ -1,0 +1,99 @@
+"""Chooses the settings of shape-aware weights, once for all shapes: `python studies/shape_aware.py RESULT.json`.
+
+Creatures made by code (creatures.py) are moved to true poses by 12 and 40 control points. What a setting scores is the
+geometric mean, over creatures and counts, of its mean error divided by that of the best of RBF, classic MLS (1/d^4) and ARAP on that creature.
+Weights come straight from the formula, without a network. Settings are chosen on creatures of some kinds and seeds ("tuning"); others,
+of a kind that was not tuned on too ("checking"), tell what the choice is worth.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+from creatures import Array, creature
+from numpy.typing import ArrayLike, NDArray
+
+from neuralmls import Deformer, NotApplicable
+from neuralmls.experiments.poses import POSE_METHODS, Poses, pose_errors
+from neuralmls.placement import farthest_of
+from neuralmls.weights import shape_aware
+from neuralmls.weights.surface_graph import SurfaceGraph
+
+COUNTS = (12, 40)
+RIVALS = ("rbf", "classic", "arap")
+GROUPS = {
+    "tuning": [(kind, seed) for kind in ("four-legged", "two-legged", "octopus", "chair") for seed in (1, 2)],
+    "checking": [(kind, 3) for kind in ("four-legged", "two-legged", "octopus", "chair")] + [("hand", 1), ("hand", 2)],
+}
+SETTINGS = list(product((4.0, 6.0, 8.0), (0.0, 0.5, 0.75, 1.0, np.inf)))  # exponent, reach
+
+
+class Given:
+    """Logits at the vertices, as a weight function."""
+
+    def __init__(self, control_points: Array, logits: Array) -> None:
+        self.control_points, self._logits = control_points, logits
+
+    def logits(self, x: ArrayLike, *, progress: object = None) -> NDArray[np.float32]:  # noqa: ARG002
+        return self._logits.astype(np.float32)
+
+
+def setting_errors(poses: Poses, count: int) -> dict[str, float]:
+    """The mean error of each setting, in % of the diagonal."""
+    x = poses.rest.positions
+    low, high = x.min(axis=0), x.max(axis=0)
+    unit = (x - (low + high) / 2) / ((high - low).max() / 2)
+    chosen = farthest_of(x, count)
+    graph = SurfaceGraph(unit, poses.rest.faces)
+    along = graph.distances(unit[chosen])[:, graph.nearest(unit)].T
+    spacing = shape_aware.spacing(along[chosen])
+    errors = {}
+    for exponent, reach in SETTINGS:
+        logits = shape_aware.shape_logits(unit[chosen], unit, along, spacing, exponent=exponent, reach=reach)
+        deformer = Deformer(x, Given(x[chosen], logits))
+        off = [np.linalg.norm(deformer.deform(pose[chosen]) - pose, axis=1).mean() for pose in poses.poses]
+        errors[f"exponent {exponent:g}, reach {reach:g}"] = 100 * float(np.mean(off) / np.linalg.norm(high - low))
+    return errors
+
+
+def rival_errors(poses: Poses, count: int) -> dict[str, float]:
+    """The mean error of each rival that can do the shape."""
+    errors = {}
+    for name in RIVALS:
+        try:
+            errors[name] = float(np.mean(pose_errors(poses, POSE_METHODS[name], count)))
+        except NotApplicable:
+            continue
+    return errors
+
+
+def main(result: Path) -> None:
+    """Run the study and write what came out."""
+    cases = []
+    for group, members in GROUPS.items():
+        for (kind, seed), count in product(members, COUNTS):
+            poses = creature(kind, seed)
+            case = {"group": group, "creature": poses.name, "control_points": count}
+            case |= {"rivals": rival_errors(poses, count), "settings": setting_errors(poses, count)}
+            cases.append(case)
+            print(group, poses.name, count, flush=True)
+    scores = {}
+    for setting in cases[0]["settings"]:
+        for group, count in product(GROUPS, COUNTS):
+            ratios = [
+                case["settings"][setting] / min(case["rivals"].values())
+                for case in cases
+                if (case["group"], case["control_points"]) == (group, count)
+            ]
+            scores.setdefault(setting, {})[f"{group}, {count}"] = float(np.exp(np.mean(np.log(ratios))))
+    result.write_text(json.dumps({"scores": scores, "cases": cases}, indent=1) + "\n")
+    for setting, score in scores.items():
+        print(f"{setting:24}", *(f"{name}: {value:.3f}" for name, value in score.items()))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
