@@ -1,14 +1,15 @@
 """Articulated shapes made by code, at rest and in true poses: what the settings of shape-aware weights are chosen on.
 
 A creature is a skeleton of tapered bones. Its surface is a level set of the smooth union of the bones, or, for
-furniture, a box a bone that is a component of its own; a pose turns every bone about its head, and a vertex follows the bone that it
-lies on, blended with that bone's neighbours in the skeleton only: true poses know the shape.
+furniture, a box a bone that is a component of its own. A pose turns every bone about its head, and a vertex follows the
+bone that it lies on, blended with that bone's neighbours in the skeleton only; a box follows its bone alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import pyvista as pv
@@ -47,7 +48,7 @@ class Skeleton:
     def chain(self, parent: int, joints: list[Array], radii: tuple[float, float], bend: float) -> int:
         """Add a bone between each two successive joints, tapering; return the last one's number."""
         widths = np.linspace(*radii, len(joints))
-        for number, (head, tail) in enumerate(zip(joints[:-1], joints[1:], strict=True)):
+        for number, (head, tail) in enumerate(pairwise(joints)):
             parent = self.add(parent, head, tail, (widths[number], widths[number + 1]), bend)
         return parent
 
@@ -111,7 +112,7 @@ def level_set(skeleton: Skeleton) -> Surface:
 
 
 def boxes(skeleton: Skeleton) -> Surface:
-    """A box around each bone, each a component of its own, finely divided so that true poses can bend where they overlap."""
+    """A box around each bone, each a component of its own, of as many vertices as the others."""
     positions, faces, count = [], [], 0
     for bone in skeleton.bones:
         along = bone.tail - bone.head
@@ -138,7 +139,7 @@ def four_legged(rng: np.random.Generator) -> Skeleton:
     front = s.add(middle, (-length * 0.17, 0, height), (-length / 2, 0, height), (thick, thick * 1.05), 15)
     neck_end = np.array([-length / 2 - u(0.1, 0.25), 0, height + u(0.15, 0.4)])
     neck = s.add(front, (-length / 2, 0, height + thick * 0.3), neck_end, (thick * 0.7, thick * 0.5), 35)
-    s.add(neck, neck_end, neck_end + (-u(0.15, 0.25), 0, -0.05), (thick * 0.55, thick * 0.35), 35)
+    s.add(neck, neck_end, neck_end - np.array([u(0.15, 0.25), 0, 0.05]), (thick * 0.55, thick * 0.35), 35)
     for parent, at in ((rear, length / 2), (front, -length / 2)):
         for side in (-1, 1):
             joints = [np.array([at + u(-0.03, 0.03), side * width, height * share]) for share in (0.9, 0.5, 0.16, 0.0)]

@@ -1,9 +1,9 @@
 """Chooses the settings of shape-aware weights, once for all shapes: `python studies/shape_aware.py RESULT.json`.
 
 Creatures made by code (creatures.py) are moved to true poses by 12 and 40 control points. What a setting scores is the
-geometric mean, over creatures and counts, of its mean error divided by that of the best of RBF, classic MLS (1/d^4) and ARAP on that creature.
-Weights come straight from the formula, without a network. Settings are chosen on creatures of some kinds and seeds ("tuning"); others,
-of a kind that was not tuned on too ("checking"), tell what the choice is worth.
+geometric mean over creatures of its mean error, divided by that of the best of RBF, classic MLS (1/d^4) and ARAP on
+that creature. Weights come straight from the formula, without a network. The creatures for "tuning" are of other seeds,
+and of fewer kinds, than those for "checking".
 """
 
 from __future__ import annotations

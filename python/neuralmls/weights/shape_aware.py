@@ -44,10 +44,10 @@ class ShapeAwareWeights(NetworkWeights):
     ) -> ShapeAwareWeights:
         """Train a network to give the weights `w_i ~ 1 / (D_i^s E_i^(1 - s))^6` on a shape.
 
-        `E_i` is the straight-line distance from control point i, and `D_i` the distance along the shape: the shortest path
-        over its triangles, across parts that touch or overlap, and from a part that touches none to its nearest. `s` is 1
-        where a control point governs the shape, `D_i` below 3/4 of the control points' spacing for one of them; beyond, where the
-        shape says less and less, `s = (3/4 spacing / min D_i)^4`, and the nearest in space decide.
+        `E_i` is the straight-line distance from control point i, and `D_i` the distance along the shape: the shortest
+        path over its triangles, across parts that touch or overlap, and from a part that touches none to its nearest.
+        `s` is 1 where a control point governs the shape, with `D_i` below 3/4 of the control points' spacing; beyond,
+        where the shape says less and less, `s = (3/4 spacing / min D_i)^4`, and the nearest in space decide.
 
         Between the samples of the surface, and off it, the weights are what the network makes of them, as smooth as the
         paper's. The targets are not needed: one fit serves every drag.

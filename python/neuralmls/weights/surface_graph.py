@@ -1,9 +1,9 @@
 """Distances along a shape, whatever it is made of: a graph over its surface, and the shortest paths in it.
 
-Vertices in one place are one node, and long edges are halved until paths over coarse triangles are about straight. Within a
-connected part a path follows the triangles, so that two near legs stay far apart; parts that touch or overlap are joined by
-short links, and what is left by its nearest pair of nodes, so that every place can be reached from every other. A cloud of
-points, and vertices without a face, are linked to their nearest neighbours.
+Vertices in one place are one node, and long edges are halved until paths over coarse triangles are about straight. Within
+a connected part a path follows the triangles, so that two near legs stay far apart. Parts that touch or overlap are
+joined by short links, and what is left by its nearest pair of nodes: every place can be reached from every other. Points
+of a cloud, and vertices without a face, are linked to their nearest neighbours.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class SurfaceGraph:
     def distances(self, p: Array) -> Array:
         """Return the lengths of the shortest paths from the points `p` (m, d) to every node: (m, nodes).
 
-        A point off the shape starts from the nodes nearest to it, all that are at most half as far again as the nearest.
+        A point off the shape starts from the nodes near it: all that are at most half as far again as the nearest.
         """
         count, m = len(self.nodes), len(p)
         near, far = _tree(self.nodes).query(p, k=min(64, count))[::-1]
