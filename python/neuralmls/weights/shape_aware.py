@@ -16,7 +16,7 @@ from neuralmls.weights.surface_graph import SurfaceGraph
 
 Array = NDArray[np.float64]
 
-# Chosen once, for all shapes, by studies/shape_aware.py; docs/beyond-the-paper.md has the figures.
+# Chosen once, for all shapes, by studies/shape_aware.py; docs/shape-aware.md has the figures.
 EXPONENT = 6.0
 REACH = 0.75  # of the spacing of the control points: how far along the shape one governs it
 SOFTNESS = 2.0  # the network learns the weights to the power 1/2: what it gives is then sharpened as much
