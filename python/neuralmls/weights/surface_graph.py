@@ -1,9 +1,9 @@
 """Distances along a shape, whatever it is made of: a graph over its surface, and the shortest paths in it.
 
-Vertices in one place are one node, and long edges are halved until paths over coarse triangles are about straight. Within
-a connected part a path follows the triangles, so that two near legs stay far apart. Parts that touch or overlap are
-joined by short links, and what is left by its nearest pair of nodes: every place can be reached from every other. Points
-of a cloud, and vertices without a face, are linked to their nearest neighbours.
+Vertices in one place are one node, and long edges are halved until paths over coarse triangles are about straight.
+Within a connected part a path follows the triangles, so that two near legs stay far apart. Parts that touch or overlap
+are joined by short links, and what is left by its nearest pair of nodes: every place can be reached from every other.
+Points of a cloud, and vertices without a face, are linked to their nearest neighbours.
 """
 
 from __future__ import annotations

@@ -179,3 +179,28 @@ fn stops_when_asked() {
     });
     assert_eq!((result, calls), (Err(Error::Cancelled), 5));
 }
+
+#[test]
+fn samples_are_given_their_labels_whatever_the_number_of_threads() {
+    let x: Vec<f64> = (0..60).flat_map(|i| [f64::from(i) / 30.0 - 1.0, 0.0]).collect();
+    let labels: Vec<f32> =
+        x.chunks(2).flat_map(|x| [(0.5 - 0.4 * x[0]) as f32, (0.5 + 0.4 * x[0]) as f32]).collect();
+    let p = [-1.0, 1.0, 1.0, 1.0];
+    let training = Training { width: 64, schedule: Schedule::Cosine(400), rate: 5e-3, ..Training::default() };
+    let teach = || {
+        let samples = Samples { x: &x, labels: &labels, batch: 16 };
+        fit(&p, Some(samples), 2, Frame::IDENTITY, &training, &mut |_| true).unwrap()
+    };
+    let here = teach();
+    let logits = here.network.logits(&x, &mut |_| true).unwrap();
+    for (row, labels) in logits.chunks(2).zip(labels.chunks(2)) {
+        let mut w = [0.0; 2];
+        crate::softmax::weights(row, 1.0, &mut w);
+        assert!((w[0] - f64::from(labels[0])).abs() < 0.05, "{w:?} {labels:?}");
+    }
+    #[cfg(feature = "threads")]
+    for threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        assert_eq!(pool.install(teach), here, "{threads} threads");
+    }
+}
