@@ -112,6 +112,15 @@ mod tests {
             x.abs(),
             L::select(x.less(y), x, y),
             L::splat(x.total()),
+            x.sub_mul(y, L::splat(0.5)),
+            y.reciprocal(),
+            y.inverse_sqrt(),
+            L::select(
+                L::less(x, y),
+                L::splat(f32::from(u8::from(L::any(L::less(x, y))))),
+                L::splat(f32::from(u8::from(L::any(L::less(x, x))))),
+            ),
+            y.reciprocal_estimate().sub(y.reciprocal()).mul(L::splat(1e-3)),
         ];
         results.map(L::store).to_vec()
     }
@@ -149,6 +158,14 @@ mod tests {
             let places = std::array::from_fn(|i| ((5 * i + 3) % WIDTH) as u32);
             assert_eq!(permuted(simd, &a, &places), places.map(|i| a[i as usize]), "{simd:?}");
             assert!((results[9][0] - a.iter().sum::<f32>()).abs() < 1e-5, "{simd:?}");
+            let more: [fn(f32, f32) -> f32; 5] =
+                [|a, b| a - b * 0.5, |_, b| 1.0 / b, |_, b| 1.0 / b.sqrt(), |_, _| 1.0, |_, _| 0.0];
+            for (k, operation) in more.iter().enumerate() {
+                for i in 0..WIDTH {
+                    let difference = (results[10 + k][i] - operation(a[i], b[i])).abs();
+                    assert!(difference <= 4e-7, "{simd:?}, operation {}, lane {i}", 10 + k);
+                }
+            }
         }
     }
 }

@@ -163,7 +163,7 @@ fn one_by_one<const D: usize>(deformer: &Deformer, q: &[f64], temperature: f64) 
     let (p, q) = (enter(&deformer.p), enter(q));
     let handles = Handles::new(&p, &q, deformer.transform);
     let (x, logits, frame) = (&deformer.x, &deformer.logits, deformer.frame);
-    let motion = Motion { x, logits, frame, temperature, handles, lanes: None };
+    let motion = Motion { x, logits, frame, temperature, handles, lanes: None, weights: Weights::None };
     let (mut y, mut maps) = (vec![0.0; x.len()], vec![0.0; x.len() * D]);
     motion.block(0, &mut y, &mut maps);
     (y, maps)

@@ -30,7 +30,15 @@ pub(crate) trait Lanes: Copy {
     fn div(self, other: Self) -> Self;
     /// `self * b + c`, rounded once where the instruction set can.
     fn mul_add(self, b: Self, c: Self) -> Self;
+    /// `self - a * b`, rounded once where the instruction set can.
+    fn sub_mul(self, a: Self, b: Self) -> Self;
     fn max(self, other: Self) -> Self;
+    /// `1 / self` to 4e-4 of itself.
+    fn reciprocal_estimate(self) -> Self;
+    /// `1 / self` to 2e-7 of itself; NaN, too, for 0 and beyond the range of normal numbers.
+    fn reciprocal(self) -> Self;
+    /// `1 / sqrt(self)`, likewise.
+    fn inverse_sqrt(self) -> Self;
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;
     /// `places`, each below 16, as [`permute`](Lanes::permute) wants them.
@@ -39,6 +47,8 @@ pub(crate) trait Lanes: Copy {
     fn permute(self, places: Self::Places) -> Self;
     /// The lanes where `self < other`.
     fn less(self, other: Self) -> Self::Mask;
+    /// Whether there is a lane in the mask.
+    fn any(mask: Self::Mask) -> bool;
     /// `yes` in the lanes of the mask, `no` in the others.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
@@ -104,6 +114,22 @@ impl Lanes for Portable {
         self.mul(b).add(c)
     }
     #[inline(always)]
+    fn sub_mul(self, a: Self, b: Self) -> Self {
+        self.sub(a.mul(b))
+    }
+    #[inline(always)]
+    fn reciprocal_estimate(self) -> Self {
+        self.reciprocal()
+    }
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        Portable(self.0.map(|number| 1.0 / number))
+    }
+    #[inline(always)]
+    fn inverse_sqrt(self) -> Self {
+        Portable(self.0.map(|number| 1.0 / number.sqrt()))
+    }
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         self.zip(other, |a, b| if a > b { a } else { b })
     }
@@ -126,6 +152,10 @@ impl Lanes for Portable {
     #[inline(always)]
     fn less(self, other: Self) -> Self::Mask {
         std::array::from_fn(|l| self.0[l] < other.0[l])
+    }
+    #[inline(always)]
+    fn any(mask: Self::Mask) -> bool {
+        mask.contains(&true)
     }
     #[inline(always)]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
@@ -180,6 +210,20 @@ mod x86 {
             mul_add(b, c) = _mm256_fmadd_ps;
             max(other) = _mm256_max_ps;
             sqrt() = _mm256_sqrt_ps;
+            reciprocal_estimate() = _mm256_rcp_ps;
+        }
+        #[inline(always)]
+        fn sub_mul(self, a: Self, b: Self) -> Self {
+            // SAFETY: called in kernels compiled for it, where it was detected; so for all below.
+            unsafe { Avx2(_mm256_fnmadd_ps(a.0, b.0, self.0), _mm256_fnmadd_ps(a.1, b.1, self.1)) }
+        }
+        #[inline(always)]
+        fn reciprocal(self) -> Self {
+            Self::splat(1.0).div(self)
+        }
+        #[inline(always)]
+        fn inverse_sqrt(self) -> Self {
+            self.sqrt().reciprocal()
         }
         #[inline(always)]
         fn splat(value: f32) -> Self {
@@ -238,6 +282,11 @@ mod x86 {
             }
         }
         #[inline(always)]
+        fn any(mask: Self::Mask) -> bool {
+            // SAFETY: as above.
+            unsafe { _mm256_movemask_ps(_mm256_or_ps(mask.0, mask.1)) != 0 }
+        }
+        #[inline(always)]
         fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
             // SAFETY: as above.
             unsafe { Avx2(_mm256_blendv_ps(no.0, yes.0, mask.0), _mm256_blendv_ps(no.1, yes.1, mask.1)) }
@@ -257,6 +306,25 @@ mod x86 {
             mul_add(b, c) = _mm512_fmadd_ps;
             max(other) = _mm512_max_ps;
             sqrt() = _mm512_sqrt_ps;
+            reciprocal_estimate() = _mm512_rcp14_ps;
+        }
+        #[inline(always)]
+        fn sub_mul(self, a: Self, b: Self) -> Self {
+            // SAFETY: called in kernels compiled for it, where it was detected; so for all below.
+            unsafe { Avx512(_mm512_fnmadd_ps(a.0, b.0, self.0)) }
+        }
+        // Estimates of 14 bits, and a step of Newton's method.
+        #[inline(always)]
+        fn reciprocal(self) -> Self {
+            let guess = self.reciprocal_estimate();
+            guess.mul(Self::splat(2.0).sub_mul(self, guess))
+        }
+        #[inline(always)]
+        fn inverse_sqrt(self) -> Self {
+            // SAFETY: as above.
+            let guess = unsafe { Avx512(_mm512_rsqrt14_ps(self.0)) };
+            let rest = Self::splat(1.0).sub_mul(self.mul(guess), guess);
+            guess.mul(Self::splat(0.5)).mul_add(rest, guess)
         }
         #[inline(always)]
         fn splat(value: f32) -> Self {
@@ -294,6 +362,10 @@ mod x86 {
         fn less(self, other: Self) -> Self::Mask {
             // SAFETY: as above.
             unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn any(mask: Self::Mask) -> bool {
+            mask != 0
         }
         #[inline(always)]
         fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {

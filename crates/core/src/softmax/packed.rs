@@ -20,7 +20,7 @@ use crate::simd::Simd;
 /// Points in a block.
 pub(crate) const LANES: usize = 16;
 /// Rows of a block after the weights.
-const MORE: usize = 3;
+pub(crate) const MORE: usize = 3;
 /// Blocks that one thread packs at a time.
 const BLOCKS: usize = 64;
 
@@ -81,7 +81,7 @@ fn clear(rows: &mut [Row], first: usize) {
 
 multiversion_loops! {
     /// Packs the logits of 16 points (16 x m).
-    fn pack(logits: &[f32], temperature: f64, rows: &mut [Row]) = pack_body
+    pub(crate) fn pack(logits: &[f32], temperature: f64, rows: &mut [Row]) = pack_body
 }
 
 #[inline(always)]
