@@ -5,6 +5,9 @@
 //! that were the tangent of |w|, each step leaves its cube. Where H is positive definite there is no other best
 //! rotation: tr(R C) has one maximum over SO(3).
 
+// Lanes and rows are counted: most loops are over several arrays at once.
+#![allow(clippy::needless_range_loop)]
+
 use super::order::Block;
 use super::weights::{PairWeights, Rows};
 use super::{ChunkOut, PairFrame, Table, CHUNK, TERMS};
@@ -21,6 +24,8 @@ const GROUP: usize = 8;
 const FAR: f32 = 0.02;
 /// The square of half the angle after which no step is needed: what the last one leaves is its cube, 1e-8.
 const DONE: f32 = 4e-6;
+/// Half of a turn that is not made.
+const NOTHING: f32 = 1e-9;
 /// How much of the sums may have cancelled in the curvature about the first axis, and about the others.
 const CANCELLED: [f32; 2] = [0.5, 0.25];
 
@@ -261,11 +266,15 @@ fn newton<L: Lanes>(s: &[L; 9], sizes: &[Row; 2]) -> ([L; 3], L) {
     let determinant = d0.mul(k00).sub_mul(o01, k01).sub_mul(o02, k02);
     // A step may be wrong by a thousandth of itself: it leaves more than that, or is the last one and small.
     let inverse = determinant.reciprocal_estimate();
-    let half = [
+    let mut half = [
         dot(&[k01, k02, k00], &[torque[1], torque[2], torque[0]]).mul(inverse),
         dot(&[k01, k12, k11], &[torque[0], torque[2], torque[1]]).mul(inverse),
         dot(&[k02, k12, k22], &torque).mul(inverse),
     ];
+    // What turns nothing is 0: products of such numbers would be denormal.
+    for axis in &mut half {
+        *axis = L::select(L::less(axis.abs(), L::splat(NOTHING)), zero, *axis);
+    }
     // The determinant over a cofactor is the curvature about that axis if the others follow.
     let least = L::load(&sizes[0].0).mul(L::splat(CANCELLED[0])).mul(k00);
     let least = least.max(L::load(&sizes[1].0).mul(L::splat(CANCELLED[1])).mul(k11.max(k22)));
