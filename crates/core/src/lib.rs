@@ -8,6 +8,7 @@
 //! | [`logits`] | weight functions: what each says of a point, before the softmax (inverse distance, neural) |
 //! | [`softmax`] | logits at a temperature -> weights, and the form of them that stays accurate however small T is |
 //! | [`mls`] | weights and moved control points -> a rigid, similarity or affine map a point |
+//! | [`placement`] | control points spread over a shape |
 //! | [`tree`] | a kd-tree over points, built once a shape |
 //! | `simd` | one kernel, compiled for several instruction sets |
 //! | [`deformer`] | joins them: points bound to their logits once, deformed many times |
@@ -23,6 +24,7 @@ pub mod frame;
 pub mod logits;
 pub mod mls;
 mod parallel;
+pub mod placement;
 pub mod progress;
 mod simd;
 pub mod softmax;

@@ -200,7 +200,9 @@ mod tests {
 
     #[test]
     fn what_lies_halfway_is_printed_the_plain_way() {
-        for (value, decimals) in [(-996387.948554865, 8), (0.5, 0), (2.5, 0), (0.125, 2), (4503599627370497.5, 0)] {
+        for (value, decimals) in
+            [(-996387.948554865, 8), (0.5, 0), (2.5, 0), (0.125, 2), (4503599627370497.5, 0)]
+        {
             let mut out = Vec::new();
             assert!(!print_scaled(value, decimals, &mut out), "{value}");
             assert!(out.is_empty());

@@ -91,8 +91,7 @@ impl Fit {
     /// Where `q` does not fit, or the temperature is not above 0.
     pub fn land(&mut self, q: &[f64], transform: &str, temperature: f64) -> Result<Float64Array, JsError> {
         self.control_points.set_transform(named(transform)?);
-        let landed =
-            self.control_points.deform(q, temperature, false, &mut |_| true).map_err(refused)?;
+        let landed = self.control_points.deform(q, temperature, false, &mut |_| true).map_err(refused)?;
         Ok(Float64Array::from(&landed.positions[..]))
     }
 

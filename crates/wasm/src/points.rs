@@ -44,8 +44,7 @@ impl Points {
     ) -> Result<Weights, JsError> {
         let schedule = steps.map_or(Training::default().schedule, Schedule::Fixed);
         let training = Training { width, seed, schedule, ..Training::default() };
-        let fit =
-            neural::fit(&p, self.dim, self.frame, &training, &mut reporter(tell)).map_err(refused)?;
+        let fit = neural::fit(&p, self.dim, self.frame, &training, &mut reporter(tell)).map_err(refused)?;
         Ok(Weights::neural(p, fit))
     }
 
@@ -64,10 +63,10 @@ impl Points {
     /// Where the weights are of another dimension.
     pub fn evaluate(&mut self, weights: &Weights, tell: &Function) -> Result<Fit, JsError> {
         let tree = if weights.is_neural() {
-            let built = self.tree.take().map_or_else(
-                || PointTree::new(&self.x, self.dim, self.frame, &mut reporter(tell)),
-                Ok,
-            );
+            let built = self
+                .tree
+                .take()
+                .map_or_else(|| PointTree::new(&self.x, self.dim, self.frame, &mut reporter(tell)), Ok);
             self.tree = Some(built.map_err(refused)?);
             self.tree.as_ref()
         } else {

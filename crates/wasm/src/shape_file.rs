@@ -1,6 +1,7 @@
 //! Shapes read from bytes.
 
 use js_sys::{Array, Float64Array, Function, Uint32Array, Uint8Array};
+use neuralmls_core::placement;
 use neuralmls_shapes::Shape;
 use wasm_bindgen::prelude::*;
 
@@ -67,6 +68,17 @@ impl ShapeFile {
     /// Files beside this one that it names.
     pub fn named_files(&self) -> Vec<String> {
         self.0.named_files()
+    }
+
+    /// `count` places spread over the shape, count x dim.
+    ///
+    /// # Errors
+    /// Where there are not so many distinct ones.
+    pub fn farthest_points(&self, count: usize, seed: u64) -> Result<Float64Array, JsError> {
+        let faces = self.0.faces().unwrap_or_default();
+        placement::farthest_points(self.0.positions(), self.0.dim(), faces, count, seed)
+            .map(|places| Float64Array::from(&places[..]))
+            .map_err(refused)
     }
 
     /// The same file with other positions (n x dim) and its normals turned by `maps` (n x dim x dim): its bytes, then name and bytes

@@ -82,8 +82,11 @@ export interface Fitted {
   steps: number;
   /** Milliseconds of the training (0 for classic weights), and of the evaluation at the points. */
   milliseconds: { train: number; evaluate: number };
-  /** A sentence where control points still share their places after the whole training, as the command line warns; else null. */
-  warning: string | null;
+  /**
+   * Control points that the whole training did not part from others (own weight below 0.85 at temperature 1), and which stop short of
+   * their targets, for a warning as the command line's. Empty for classic weights and for a fixed number of steps.
+   */
+  shared: number[];
 }
 
 /** How the control points are moved. */
