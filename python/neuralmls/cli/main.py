@@ -13,6 +13,7 @@ from typer.main import get_command
 from neuralmls.cli import console
 from neuralmls.cli.deform import deform
 from neuralmls.cli.demo import demo
+from neuralmls.cli.edit import edit
 from neuralmls.cli.inspect import inspect
 from neuralmls.cli.points import points
 from neuralmls.cli.render import render
@@ -32,7 +33,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-for command in (deform, inspect, points, render, sample, demo):
+for command in (deform, edit, inspect, points, render, sample, demo):
     app.command()(command)
 
 
