@@ -146,7 +146,7 @@ export interface Core {
    * file's name; changed side files are called after it.
    */
   save(name: string, motion: Motion | null, options?: CallOptions): Promise<Saved>;
-  /** `count` places spread over the open shape, count x 3 in file units, as `neuralmls points` places them. */
+  /** `count` places spread over the open shape, count x 3 in file units, by the rule of `neuralmls points` (placement.rs). */
   farthestPoints(count: number, seed?: number, options?: CallOptions): Promise<Float64Array<ArrayBuffer>>;
   /** Ends the workers. */
   close(): void;
