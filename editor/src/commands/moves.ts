@@ -1,13 +1,10 @@
 /** Moves of control points: of their targets (a drag), or of their places at rest (which asks for a new fit). */
 
 import { mirrorVector, twinOf } from "../model/mirror.ts";
-import { type ControlPoint, find, type PointId, type Session } from "../model/session.ts";
+import { type ControlPoint, find, type Moves, type PointId, type Session } from "../model/session.ts";
 import { add, equal, subtract, type Vec3 } from "../model/vec3.ts";
-import { change } from "./points.ts";
 import type { Command } from "./history.ts";
-
-/** What a move moves: where control points are moved to, or where they are at rest. */
-export type Moves = "target" | "position";
+import { change } from "./points.ts";
 
 /** Moves the selected control points to where `to` takes their targets (or places). Twins follow, locked ones stay. */
 export function moveSelected(session: Session, moves: Moves, to: (place: Vec3) => Vec3): Session {

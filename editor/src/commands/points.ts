@@ -1,7 +1,7 @@
 /** Commands on control points: add, remove, name, lock. */
 
 import { isOnPlane, mirrorPoint, mirrorVector } from "../model/mirror.ts";
-import { type ControlPoint, find, freeNames, nextId, type PointId, type Session } from "../model/session.ts";
+import { type ControlPoint, find, freeNames, isMoved, nextId, type PointId, type Session } from "../model/session.ts";
 import { add, equal, subtract, type Vec3 } from "../model/vec3.ts";
 import type { Command } from "./history.ts";
 
@@ -39,6 +39,19 @@ export function addPoint(place: Place, box: Box): Command {
 /** Adds many control points and selects them. */
 export function addPoints(places: readonly Place[]): Command {
   return { label: `Place ${places.length} control points`, apply: (session) => withPoints(session, places) };
+}
+
+/** The same, but control points that are neither moved nor locked give way to them. */
+export function placeAnew(places: readonly Place[]): Command {
+  return {
+    label: `Place ${places.length} control points`,
+    apply(session) {
+      const points = session.points.filter((point) => point.locked || isMoved(point));
+      const stays = new Set(points.map((point) => point.id));
+      const pairs = session.pairs.filter(([a, b]) => stays.has(a) && stays.has(b));
+      return withPoints({ ...session, points, selection: [], pairs }, places);
+    },
+  };
 }
 
 function withPoints(session: Session, places: readonly Place[]): Session {

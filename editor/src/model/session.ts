@@ -15,6 +15,9 @@ export interface ControlPoint {
   readonly locked: boolean;
 }
 
+/** What a move moves: where control points are moved to, or where they are at rest. */
+export type Moves = "target" | "position";
+
 /** Two control points of which a move of one moves the other, mirrored. */
 export type Pair = readonly [PointId, PointId];
 

@@ -127,7 +127,7 @@ function horn([xx, xy, xz, yx, yy, yz, zx, zy, zz]: Matrix): number[][] {
 
 /** Cyclic Jacobi rotations. */
 function largestEigenvector(n: number[][]): number[] {
-  const vectors = n.map((_, i) => n.map((_, j) => (i === j ? 1 : 0)));
+  const vectors = n.map((_, i) => n.map((_, j): number => (i === j ? 1 : 0)));
   for (let sweep = 0; sweep < 24; sweep++) {
     let rotated = false;
     for (let i = 0; i < 3; i++) {

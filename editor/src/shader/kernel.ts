@@ -11,9 +11,9 @@ import { DEFORM_VERTEX_SHADER, NO_FRAGMENTS } from "./glsl.ts";
 /** What is drawn: each vertex belongs to a point of the shape, whose logits it has. */
 export interface RestVertices {
   /** Relative to the shape's box, 3 numbers each. */
-  positions: Float32Array;
-  normals: Float32Array;
-  points: Uint32Array;
+  positions: Float32Array<ArrayBuffer>;
+  normals: Float32Array<ArrayBuffer>;
+  points: Uint32Array<ArrayBuffer>;
 }
 
 export type Tint = { by: "nothing" } | { by: "weight"; of: number } | { by: "point" };
@@ -69,8 +69,8 @@ export class BoundVertices {
   readonly #controlPoints: WebGLTexture;
   #logits: WebGLTexture | undefined;
   #m = 0;
-  #colours = new Float32Array(0);
-  #table = new Float32Array(0);
+  #colours: Float32Array = new Float32Array(0);
+  #table: Float32Array = new Float32Array(0);
 
   constructor(kernel: Kernel, rest: RestVertices) {
     const { gl } = kernel;
@@ -88,7 +88,7 @@ export class BoundVertices {
       else gl.vertexAttribPointer(location, 3, gl.FLOAT, false, 0, 0);
     });
     gl.bindVertexArray(null);
-    const output = (data: Float32Array): WebGLBuffer => {
+    const output = (data: Float32Array<ArrayBuffer>): WebGLBuffer => {
       const buffer = gl.createBuffer();
       gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
       gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_COPY);
@@ -172,7 +172,7 @@ export class BoundVertices {
   }
 
   /** Shows places that were computed elsewhere. */
-  show(positions: Float32Array, normals: Float32Array): void {
+  show(positions: Float32Array<ArrayBuffer>, normals: Float32Array<ArrayBuffer>): void {
     const { gl } = this.#kernel;
     gl.bindVertexArray(null);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.positions);

@@ -1,0 +1,3 @@
+export async function page(..._: unknown[]): Promise<string> {
+  throw new Error("not yet");
+}

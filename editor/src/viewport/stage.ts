@@ -1,0 +1,141 @@
+/** Camera, lights and the drawing surface; draws when something has changed, not otherwise. */
+
+import {
+  DirectionalLight,
+  HemisphereLight,
+  MOUSE,
+  PerspectiveCamera,
+  Scene,
+  Sphere,
+  TOUCH,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+
+const FIELD_OF_VIEW = 32;
+
+export class Stage {
+  readonly scene = new Scene();
+  readonly camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
+  readonly renderer: WebGLRenderer;
+  /** The part of the drawing surface that takes the pointer: all of it, or its left half. */
+  readonly pane: HTMLElement;
+  orbit!: OrbitControls;
+  /** Called before a frame is drawn. */
+  onFrame: () => void = () => {};
+  /** Called after a frame is drawn, with the time at which it was begun. */
+  onDrawn: (start: number) => void = () => {};
+  /** What is seen in the right half, where there are two. */
+  showRight: ((right: boolean) => void) | undefined;
+  readonly #host: HTMLElement;
+  #wanted = false;
+
+  constructor(host: HTMLElement) {
+    this.#host = host;
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, powerPreference: "high-performance" });
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.domElement.setAttribute("aria-hidden", "true");
+    this.renderer.autoClear = false;
+    this.pane = document.createElement("div");
+    this.pane.className = "pane";
+    host.append(this.renderer.domElement, this.pane);
+    const key = new DirectionalLight(0xffffff, 2.1);
+    key.position.set(-1.2, 1.8, 2.2);
+    const fill = new DirectionalLight(0xdfe8ff, 0.7);
+    fill.position.set(2.5, -0.6, 1);
+    this.camera.add(key, key.target, fill, fill.target);
+    this.scene.add(this.camera, new HemisphereLight(0xffffff, 0x8a8378, 1.15));
+    new ResizeObserver(() => this.resize()).observe(host);
+  }
+
+  /** After everything that takes the pointer before it. */
+  startOrbit(): void {
+    this.orbit = new OrbitControls(this.camera, this.pane);
+    this.orbit.enableDamping = false;
+    this.orbit.zoomToCursor = true;
+    this.orbit.minDistance = 0.05;
+    this.orbit.maxDistance = 40;
+    this.orbit.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.PAN, RIGHT: MOUSE.PAN };
+    this.orbit.touches = { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_PAN };
+    this.orbit.addEventListener("change", () => this.request());
+    this.home();
+  }
+
+  get split(): boolean {
+    return this.showRight !== undefined;
+  }
+
+  /** Draws soon. */
+  request(): void {
+    if (this.#wanted) return;
+    this.#wanted = true;
+    requestAnimationFrame(() => {
+      this.#wanted = false;
+      this.draw();
+    });
+  }
+
+  draw(): void {
+    const start = performance.now();
+    this.onFrame();
+    this.#render();
+    this.onDrawn(start);
+  }
+
+  #render(): void {
+    const { renderer, scene, camera } = this;
+    const [width, height] = [this.#host.clientWidth, this.#host.clientHeight];
+    renderer.setScissorTest(false);
+    renderer.clear();
+    if (!this.showRight) {
+      renderer.setViewport(0, 0, width, height);
+      renderer.render(scene, camera);
+      return;
+    }
+    renderer.setScissorTest(true);
+    for (const right of [false, true]) {
+      const x = right ? Math.ceil(width / 2) : 0;
+      renderer.setViewport(x, 0, width / 2, height);
+      renderer.setScissor(x, 0, width / 2, height);
+      this.showRight(right);
+      renderer.render(scene, camera);
+    }
+    this.showRight(false);
+  }
+
+  resize(): void {
+    const [width, height] = [this.#host.clientWidth, this.#host.clientHeight];
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height, false);
+    this.pane.style.width = this.split ? "50%" : "100%";
+    this.camera.aspect = width / (this.split ? 2 : 1) / height;
+    this.camera.updateProjectionMatrix();
+    this.request();
+  }
+
+  /** Shows all of the shape, from the front and a little above. */
+  home(): void {
+    this.camera.position.set(2.6, 1.7, 4.2);
+    this.orbit.target.set(0, 0, 0);
+    this.#lookAt(new Sphere(new Vector3(), 1.25));
+  }
+
+  /** Turns to a place without changing the direction of view. */
+  focus(sphere: Sphere): void {
+    this.#lookAt(sphere);
+  }
+
+  #lookAt(sphere: Sphere): void {
+    const narrow = Math.min(1, this.camera.aspect);
+    const away = sphere.radius / Math.sin((FIELD_OF_VIEW / 360) * Math.PI) / narrow;
+    const from = this.camera.position.clone().sub(this.orbit.target).normalize();
+    this.orbit.target.copy(sphere.center);
+    this.camera.position.copy(sphere.center).addScaledVector(from, away);
+    this.camera.near = Math.max(0.001, away / 200);
+    this.camera.far = away + 60;
+    this.camera.updateProjectionMatrix();
+    this.orbit.update();
+    this.request();
+  }
+}
