@@ -41,8 +41,7 @@ editor: wasm node .venv/figures.stamp
 	$$install --locked || $$install; } # A mirror of crates.io may lack what is locked.
 	$(WASM_BINDGEN) --target web --out-dir editor/src/wasm --remove-name-section --remove-producers-section \
 		$(TARGET)/wasm32-unknown-unknown/release/neuralmls_wasm.wasm
-	mkdir -p editor/public/samples
-	for name in chair airplane car table; do $(BIN)/neuralmls sample $$name -o editor/public/samples/$$name.obj --force -q || exit 1; done
+	node editor/scripts/samples.mjs $(BIN)/neuralmls editor/public/samples
 	cd editor && npm ci --no-audit --no-fund --silent && npm run --silent build
 
 editor-test: editor .venv/test.stamp
