@@ -64,7 +64,9 @@ export class App {
     } catch {
       // A copy of the editor without samples works as well.
     }
-    await this.offerRecovery();
+    // What `neuralmls edit` was started with.
+    if (new URLSearchParams(location.search).has("session")) await this.#guarded(async () => this.openBytes(await fetchSession()));
+    else await this.offerRecovery();
   }
 
   // Opening
@@ -321,4 +323,18 @@ async function fetchBytes(url: string): Promise<Uint8Array> {
 /** The samples that were built with the editor. */
 export async function fetchSamples(): Promise<Sample[]> {
   return JSON.parse(new TextDecoder().decode(await fetchBytes("./samples/index.json"))) as Sample[];
+}
+
+/** The files that `neuralmls edit` serves: a shape, its companions, and control points. */
+async function fetchSession(): Promise<Files> {
+  interface Listed {
+    name: string;
+    address: string;
+  }
+  const described = JSON.parse(new TextDecoder().decode(await fetchBytes("./session.json"))) as {
+    files: Listed[];
+    points: Listed | null;
+  };
+  const all = [...described.files, ...(described.points ? [described.points] : [])];
+  return new Map(await Promise.all(all.map(async ({ name, address }) => [name, await fetchBytes(`./${address}`)] as const)));
 }

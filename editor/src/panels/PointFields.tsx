@@ -13,6 +13,8 @@ export function PointFields() {
   const point = leader(session);
   if (!point || !shape) return null;
   const all = selected(session);
+  // Ten-thousandths of the shape.
+  const digits = Math.min(12, Math.max(0, 3 - Math.floor(Math.log10(shape.opened.frame.half))));
   const row = (which: "target" | "position", title: string) => (
     <div class={`coordinates ${view.moves === which ? "" : "faint"}`}>
       <span class="row-label">{title}</span>
@@ -22,6 +24,7 @@ export function PointFields() {
           prefix={axis}
           label={`${title} ${axis}`}
           value={point[which][at]}
+          shown={point[which][at].toFixed(digits)}
           disabled={point.locked}
           onChange={(value) => app.do(put(point.id, which, point[which].map((c, k) => (k === at ? value : c)) as unknown as Vec3))}
         />

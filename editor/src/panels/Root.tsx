@@ -1,7 +1,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import type { App } from "../app/app.ts";
 import { ACCEPTED } from "../app/files.ts";
-import { LookPanel } from "./LookPanel.tsx";
+import { LookBar } from "./LookBar.tsx";
 import { BusyNote, Empty, Help, SideLabels, Toasts } from "./Overlays.tsx";
 import { PointsPanel } from "./PointsPanel.tsx";
 import { StatusBar } from "./StatusBar.tsx";
@@ -47,6 +47,7 @@ function Page({ host }: { host: HTMLElement }) {
         <div class="view" ref={view}>
           <SideLabels />
           <ToolBar />
+          <LookBar />
           <Empty />
           <BusyNote />
           <StatusBar />
@@ -55,7 +56,6 @@ function Page({ host }: { host: HTMLElement }) {
           <aside class="panel" aria-label="Settings">
             <PointsPanel />
             <WeightsPanel />
-            <LookPanel />
           </aside>
         )}
       </main>

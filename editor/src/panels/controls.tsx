@@ -110,11 +110,13 @@ interface NumberFieldProps {
   whole?: boolean;
   disabled?: boolean;
   prefix?: string;
+  /** How it is shown; six digits by default. */
+  shown?: string;
   onChange: (value: number) => void;
 }
 
 /** A number to be typed; taken with Enter or when the field is left. What is no number is forgotten. */
-export function NumberField({ label, value, min, max, whole, disabled, prefix, onChange }: NumberFieldProps) {
+export function NumberField({ label, value, min, max, whole, disabled, prefix, shown, onChange }: NumberFieldProps) {
   const [text, setText] = useState<string | null>(null);
   const field = useRef<HTMLInputElement>(null);
   const take = (): void => {
@@ -133,7 +135,7 @@ export function NumberField({ label, value, min, max, whole, disabled, prefix, o
         inputMode="decimal"
         aria-label={label}
         disabled={disabled ?? false}
-        value={text ?? short(value)}
+        value={text ?? shown ?? short(value)}
         onFocus={(event) => event.currentTarget.select()}
         onInput={(event) => setText(event.currentTarget.value)}
         onBlur={take}

@@ -161,6 +161,8 @@ export class BoundVertices {
     gl.uniform1i(uniforms.tintBy, TINT_CODES[tint.by]);
     gl.uniform1i(uniforms.tinted, tint.by === "weight" ? tint.of : -1);
     gl.bindVertexArray(this.#array);
+    // What is written to must not be bound to anything else, and drawing may have left it so.
+    gl.bindBuffer(gl.ARRAY_BUFFER, null);
     gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, this.#feedback);
     gl.enable(gl.RASTERIZER_DISCARD);
     gl.beginTransformFeedback(gl.POINTS);

@@ -1,11 +1,12 @@
 /** What the geometry worker is asked, and what it answers. */
 
 import type { SerializedBVH } from "three-mesh-bvh";
-import type { RestMesh } from "./restVertices.ts";
+import type { CornerData, RestMesh } from "./restVertices.ts";
 
 export interface GeometryRequest {
   positions: Float32Array<ArrayBuffer>;
   triangles: Uint32Array<ArrayBuffer>;
+  corners: CornerData[];
 }
 
 export interface GeometryAnswer {

@@ -6,7 +6,7 @@ import type { GeometryRequest } from "./geometry.ts";
 import { restMesh } from "./restVertices.ts";
 
 self.onmessage = ({ data }: MessageEvent<GeometryRequest>): void => {
-  const mesh = restMesh(data.positions, data.triangles);
+  const mesh = restMesh(data.positions, data.triangles, data.corners);
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(mesh.positions, 3));
   geometry.setIndex(new BufferAttribute(mesh.index, 1));

@@ -21,7 +21,8 @@ export class Gizmo {
 
   constructor(stage: Stage, scene: Scene, events: GizmoEvents) {
     this.#controls = new TransformControls(stage.camera, stage.pane);
-    this.#controls.setSize(0.72);
+    this.#controls.setSize(0.78);
+    this.#controls.setColors(0xe0483e, 0x55a630, 0x3d7fe0, 0xffb020);
     scene.add(this.#proxy, this.#controls.getHelper());
     this.#controls.addEventListener("change", () => stage.request());
     this.#controls.addEventListener("dragging-changed", ({ value }) => {

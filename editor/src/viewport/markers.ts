@@ -90,7 +90,7 @@ export class Markers {
     const nodes = [
       new LineSegments(this.#lineGeometry, line(0.25, true)),
       new LineSegments(this.#lineGeometry, line(0.9, false)),
-      new Points(this.#geometry, material(0.38, true)),
+      new Points(this.#geometry, material(0.5, true)),
       new Points(this.#geometry, material(1, false)),
     ];
     nodes.forEach((node, i) => {

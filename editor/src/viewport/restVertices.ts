@@ -12,30 +12,41 @@ export interface RestMesh {
   points: Uint32Array<ArrayBuffer>;
   /** Three vertices a triangle, in the order of the shape's triangles. */
   index: Uint32Array<ArrayBuffer>;
+  /** What corners bring along (texture coordinates, colours), now for each vertex. */
+  extras: Float32Array<ArrayBuffer>[];
 }
 
-/** `positions` (n x 3), `triangles` (f x 3): vertices with normals that are smooth but for creases. */
-export function restMesh(positions: Float32Array, triangles: Uint32Array): RestMesh {
+/** Numbers that belong to the corners of triangles: `size` for each of the 3 f corners. */
+export interface CornerData {
+  data: Float32Array<ArrayBuffer>;
+  size: number;
+}
+
+/**
+ * `positions` (n x 3), `triangles` (f x 3): vertices with normals that are smooth but for creases. Corners with different data are
+ * different vertices.
+ */
+export function restMesh(positions: Float32Array, triangles: Uint32Array, corners: readonly CornerData[] = []): RestMesh {
   const places = weld(positions);
   const faceNormals = normalsOfFaces(positions, triangles);
-  const corners = cornersAround(places, triangles);
+  const around = cornersAround(places, triangles);
   const n = positions.length / 3;
-  const corner = triangles.length;
-  const clusterOf = new Uint8Array(corner);
-  const index = new Uint32Array(corner);
+  const clusterOf = new Uint8Array(triangles.length);
+  const index = new Uint32Array(triangles.length);
   // A corner's vertex is that of its point and of its cluster of faces; a chain for each point.
   const points: number[] = [];
   const normals: number[] = [];
-  const clusters: number[] = [];
+  /** A corner of each vertex: the others have the same cluster and data. */
+  const cornerOf: number[] = [];
   const next: number[] = [];
   const firstOf = new Int32Array(n).fill(-1);
   const sums = new Float64Array(3 * MOST_NORMALS);
   const seeds = new Float64Array(3 * MOST_NORMALS);
   for (let place = 0; place < n; place++) {
-    const [begin, end] = [corners.first[place], corners.first[place + 1]];
+    const [begin, end] = [around.first[place], around.first[place + 1]];
     let count = 0;
     for (let at = begin; at < end; at++) {
-      const c = corners.list[at];
+      const c = around.list[at];
       const f = 3 * Math.floor(c / 3);
       const [x, y, z] = [faceNormals[f], faceNormals[f + 1], faceNormals[f + 2]];
       const area = Math.hypot(x, y, z) || 1e-30;
@@ -58,14 +69,16 @@ export function restMesh(positions: Float32Array, triangles: Uint32Array): RestM
       sums[3 * cluster + 2] += z;
     }
     for (let at = begin; at < end; at++) {
-      const c = corners.list[at];
+      const c = around.list[at];
       const point = triangles[c];
       let vertex = firstOf[point];
-      while (vertex >= 0 && clusters[vertex] !== clusterOf[c]) vertex = next[vertex];
+      while (vertex >= 0 && !(clusterOf[cornerOf[vertex]] === clusterOf[c] && same(corners, cornerOf[vertex], c))) {
+        vertex = next[vertex];
+      }
       if (vertex < 0) {
         vertex = points.length;
         points.push(point);
-        clusters.push(clusterOf[c]);
+        cornerOf.push(c);
         next.push(firstOf[point]);
         firstOf[point] = vertex;
         const s = 3 * clusterOf[c];
@@ -76,18 +89,26 @@ export function restMesh(positions: Float32Array, triangles: Uint32Array): RestM
     }
   }
   return {
-    positions: gather(positions, points),
+    positions: gather(positions, points, 3),
     normals: new Float32Array(normals),
     points: new Uint32Array(points),
     index,
+    extras: corners.map((extra) => gather(extra.data, cornerOf, extra.size)),
   };
 }
 
-/** The places of some points. */
-export function gather(positions: Float32Array, points: ArrayLike<number>): Float32Array<ArrayBuffer> {
-  const gathered = new Float32Array(3 * points.length);
-  for (let i = 0; i < points.length; i++) {
-    for (let c = 0; c < 3; c++) gathered[3 * i + c] = positions[3 * points[i] + c];
+function same(corners: readonly CornerData[], a: number, b: number): boolean {
+  for (const { data, size } of corners) {
+    for (let k = 0; k < size; k++) if (data[size * a + k] !== data[size * b + k]) return false;
+  }
+  return true;
+}
+
+/** Some of the rows of a table. */
+function gather(table: Float32Array, rows: ArrayLike<number>, size: number): Float32Array<ArrayBuffer> {
+  const gathered = new Float32Array(size * rows.length);
+  for (let i = 0; i < rows.length; i++) {
+    for (let c = 0; c < size; c++) gathered[size * i + c] = table[size * rows[i] + c];
   }
   return gathered;
 }

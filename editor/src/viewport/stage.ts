@@ -59,7 +59,7 @@ export class Stage {
     this.orbit.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.PAN, RIGHT: MOUSE.PAN };
     this.orbit.touches = { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_PAN };
     this.orbit.addEventListener("change", () => this.request());
-    this.home();
+    this.home(new Sphere(new Vector3(), 1));
   }
 
   get split(): boolean {
@@ -109,16 +109,21 @@ export class Stage {
     if (width === 0 || height === 0) return;
     this.renderer.setSize(width, height, false);
     this.pane.style.width = this.split ? "50%" : "100%";
+    const narrow = Math.min(1, this.camera.aspect);
     this.camera.aspect = width / (this.split ? 2 : 1) / height;
+    // What was in the window stays in it.
+    const farther = narrow / Math.min(1, this.camera.aspect);
+    this.camera.position.sub(this.orbit.target).multiplyScalar(farther).add(this.orbit.target);
     this.camera.updateProjectionMatrix();
+    this.orbit.update();
     this.request();
   }
 
-  /** Shows all of the shape, from the front and a little above. */
-  home(): void {
-    this.camera.position.set(2.6, 1.7, 4.2);
+  /** Shows all of the shape, which lies within a sphere, from the front and a little above. */
+  home(sphere: Sphere): void {
+    this.camera.position.set(2.6, 1.5, 4.2);
     this.orbit.target.set(0, 0, 0);
-    this.#lookAt(new Sphere(new Vector3(), 1.25));
+    this.#lookAt(sphere);
   }
 
   /** Turns to a place without changing the direction of view. */

@@ -1,6 +1,6 @@
 /** The view of the shape and its control points; every edit that it makes is a command or a gesture of the history. */
 
-import { Matrix3, type Ray, Sphere, Vector2, Vector3 } from "three";
+import { Box3, Matrix3, type Ray, Sphere, Vector2, Vector3 } from "three";
 import type { SerializedBVH } from "three-mesh-bvh";
 import { addPoint, type Box, type History, moveSelected, select } from "../commands/index.ts";
 import { twinOf } from "../model/mirror.ts";
@@ -105,7 +105,7 @@ export class Viewport {
     this.#pointer.step = niceStep(box.half / 20) / box.half;
     const view = this.#add("main", drawn);
     this.#picking = new Picking(drawn.rest.positions, () => view.bound.read(), mesh);
-    this.stage.home();
+    this.#home();
     this.invalidate();
   }
 
@@ -164,7 +164,7 @@ export class Viewport {
   /** Shows all of the shape, or the selected control points. */
   focus(what: "all" | "selection"): void {
     const places = selected(this.#history.session).map((point) => this.#toView(point[this.#view.moves]));
-    if (what === "all" || places.length === 0) return this.stage.home();
+    if (what === "all" || places.length === 0) return this.#home();
     const sphere = new Sphere().setFromPoints(places);
     sphere.radius = Math.max(sphere.radius * 1.6, 0.35);
     this.stage.focus(sphere);
@@ -223,6 +223,14 @@ export class Viewport {
     this.#stale = true;
     this.#picking?.invalidate();
     this.stage.request();
+  }
+
+  /** Looks at the shape, at rest and with the targets of its control points. */
+  #home(): void {
+    const positions = this.#sides.main?.view.drawn.rest.positions ?? new Float32Array(3);
+    const sphere = new Box3().setFromArray(positions).getBoundingSphere(new Sphere());
+    for (const { target } of this.#history.session.points) sphere.expandByPoint(this.#toView(target));
+    this.stage.home(sphere);
   }
 
   #drag(to: (place: Vec3) => Vec3): void {

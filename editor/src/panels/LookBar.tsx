@@ -1,5 +1,5 @@
 import type { Colouring } from "../model/view.ts";
-import { Button, Section, Segmented } from "./controls.tsx";
+import { Button, Segmented } from "./controls.tsx";
 import { useApp, useAppState } from "./useStore.ts";
 
 const COLOURS: readonly { value: Colouring; label: string; title: string }[] = [
@@ -8,20 +8,20 @@ const COLOURS: readonly { value: Colouring; label: string; title: string }[] = [
   { value: "points", label: "All points", title: "Each control point in its colour (3)" },
 ];
 
-export function LookPanel() {
+/** What the colours on the shape show; beside it. */
+export function LookBar() {
   const app = useApp();
   const { view, session, shape } = useAppState();
+  if (!shape) return null;
   const chosen = session.points.find((point) => point.id === session.selection.at(-1));
   return (
-    <Section
-      title="Look"
-      action={
-        shape?.opened.triangles && (
+    <div class="look-bar">
+      <div class="row">
+        <Segmented label="Colours" value={view.colouring} options={COLOURS} onChange={(colouring) => app.setView({ colouring })} />
+        {shape.opened.triangles && (
           <Button quiet icon="wire" label="Wireframe" hint="X" pressed={view.wireframe} onClick={() => app.setView({ wireframe: !view.wireframe })} />
-        )
-      }
-    >
-      <Segmented label="Colours" value={view.colouring} options={COLOURS} onChange={(colouring) => app.setView({ colouring })} />
+        )}
+      </div>
       {view.colouring === "weight" && (
         <div class="heat-legend">
           <span>0</span>
@@ -30,6 +30,6 @@ export function LookPanel() {
           <em>{chosen ? `weight of ${chosen.name}` : "select a control point"}</em>
         </div>
       )}
-    </Section>
+    </div>
   );
 }
