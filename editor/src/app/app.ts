@@ -21,7 +21,7 @@ const STAGES = {
   write: "Writing",
 } as const;
 
-/** Frames of a drag between two updates of the panels would cost more than they tell. */
+/** The panels follow a drag at this distance: more often would cost more than it tells. */
 const PANEL_MILLISECONDS = 100;
 const AUTOSAVE_MILLISECONDS = 400;
 const TOAST_MILLISECONDS = 7000;
@@ -34,7 +34,7 @@ export class App {
   readonly #autosave: Autosave;
   readonly #weights: Weights;
   #toasts = 0;
-  #published = 0;
+  #telling: ReturnType<typeof setTimeout> | undefined;
   #autosaving: ReturnType<typeof setTimeout> | undefined;
   #opening: AbortController | undefined;
 
@@ -83,6 +83,7 @@ export class App {
       throw new Error(`${[...files.keys()].join(", ")}: expected a shape (OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV, NPY) or control points (JSON, CSV)`);
     }
     if (points !== undefined) this.#openPoints(points, files.get(points) as Uint8Array);
+    if (shape !== undefined) this.display.focus("all");
   }
 
   async openSample(sample: Sample): Promise<void> {
@@ -235,10 +236,15 @@ export class App {
     this.store.set({ toasts: this.store.value.toasts.filter((toast) => toast.id !== id) });
   }
 
+  /** Tells the panels; not within a frame of a drag. */
   #publish(): void {
-    const now = performance.now();
-    if (this.history.inGesture && now - this.#published < PANEL_MILLISECONDS) return;
-    this.#published = now;
+    if (!this.history.inGesture) this.#tell();
+    else this.#telling ??= setTimeout(() => this.#tell(), PANEL_MILLISECONDS);
+  }
+
+  #tell(): void {
+    clearTimeout(this.#telling);
+    this.#telling = undefined;
     const { session, undoLabel, redoLabel } = this.history;
     this.store.set({ session, undoLabel, redoLabel });
     if (this.history.inGesture || !this.store.value.shape) return;

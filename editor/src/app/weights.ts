@@ -22,6 +22,9 @@ export type TakeWeights = (slot: Slot, weights: BoundWeights | undefined) => boo
 /** The progress of a quicker fit would only flicker. */
 const QUIET_MILLISECONDS = 150;
 
+/** How often it is asked during a drag where the control points land. */
+const DRAG_MILLISECONDS = 80;
+
 export class Weights {
   /** Shows a frame of the core where the GPU cannot hold the weights. */
   showFrame: (positions: Float64Array, maps: Float64Array) => void = () => {};
@@ -62,8 +65,14 @@ export class Weights {
       if (this.#store.value.view.comparison) this.#fitIfNeeded("comparison", session, other);
       else if (this.#bound.comparison) this.#drop("comparison");
     }
-    void this.#land();
+    // Not within a frame of a drag.
+    this.#asking ??= setTimeout(() => {
+      this.#asking = undefined;
+      void this.#land();
+    }, this.#history.inGesture ? DRAG_MILLISECONDS : 0);
   }
+
+  #asking: ReturnType<typeof setTimeout> | undefined;
 
   /** The motion of the control points that the weights of the slot "main" were fitted to; null without any. */
   motion(session: Session): Motion | null {

@@ -42,8 +42,12 @@ export class Kernel {
   readonly program: WebGLProgram;
   readonly uniforms: Record<(typeof UNIFORMS)[number], WebGLUniformLocation | null>;
 
-  constructor(gl: WebGL2RenderingContext) {
+  readonly #afterwards: () => void;
+
+  /** `afterwards` is called when the context has been used: what others believe of its state is not so any more. */
+  constructor(gl: WebGL2RenderingContext, afterwards: () => void = () => {}) {
     this.gl = gl;
+    this.#afterwards = afterwards;
     this.program = link(gl);
     this.uniforms = Object.fromEntries(
       UNIFORMS.map((name) => [name, gl.getUniformLocation(this.program, name)]),
@@ -52,7 +56,24 @@ export class Kernel {
 
   /** Takes a shape to the GPU. */
   bind(rest: RestVertices): BoundVertices {
-    return new BoundVertices(this, rest);
+    return this.use(() => new BoundVertices(this, rest));
+  }
+
+  /** Does some work in the context, from a state that it knows. Nothing is asked of the context: the answer would have to be waited for. */
+  use<T>(work: () => T): T {
+    const { gl } = this;
+    gl.bindVertexArray(null);
+    gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
+    gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
+    gl.pixelStorei(gl.UNPACK_ROW_LENGTH, 0);
+    try {
+      return work();
+    } finally {
+      gl.bindVertexArray(null);
+      gl.bindBuffer(gl.ARRAY_BUFFER, null);
+      this.#afterwards();
+    }
   }
 }
 
@@ -97,7 +118,6 @@ export class BoundVertices {
     this.positions = output(rest.positions);
     this.normals = output(rest.normals);
     this.tints = output(new Float32Array(3 * this.count).fill(1));
-    gl.bindBuffer(gl.ARRAY_BUFFER, null);
     this.#feedback = gl.createTransformFeedback();
     gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, this.#feedback);
     [this.positions, this.normals, this.tints].forEach((buffer, at) =>
@@ -124,29 +144,32 @@ export class BoundVertices {
     for (let from = 0, to = 0; from < logits.length; from += m, to += 4 * perPoint) {
       for (let i = 0; i < m; i++) padded[to + i] = Math.min(logits[from + i], LARGEST_LOGIT);
     }
-    this.#logits ??= dataTexture(gl);
-    gl.bindTexture(gl.TEXTURE_2D, this.#logits);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, padded);
-    this.#m = m;
-    this.#colours = colours;
-    this.#table = new Float32Array(4 * m * 3);
-    gl.bindTexture(gl.TEXTURE_2D, this.#controlPoints);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, m, 3, 0, gl.RGBA, gl.FLOAT, null);
-    gl.bindTexture(gl.TEXTURE_2D, null);
+    this.#kernel.use(() => {
+      this.#logits ??= dataTexture(gl);
+      gl.bindTexture(gl.TEXTURE_2D, this.#logits);
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, padded);
+      this.#m = m;
+      this.#colours = colours;
+      this.#table = new Float32Array(4 * m * 3);
+      gl.bindTexture(gl.TEXTURE_2D, this.#controlPoints);
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, m, 3, 0, gl.RGBA, gl.FLOAT, null);
+    });
     return true;
   }
 
-  /** Computes a frame. Changes the state of the WebGL context: three's is to be reset afterwards. */
-  deform({ p, q, transform, temperature, tint }: GpuMotion): void {
+  /** Computes a frame. */
+  deform(motion: GpuMotion): void {
+    if (this.#logits && motion.p.length === 3 * this.#m) this.#kernel.use(() => this.#compute(motion));
+  }
+
+  #compute({ p, q, transform, temperature, tint }: GpuMotion): void {
     const { gl, program, uniforms } = this.#kernel;
     const m = this.#m;
-    if (!this.#logits || p.length !== 3 * m) return;
     gl.useProgram(program);
     gl.activeTexture(gl.TEXTURE0);
-    gl.bindTexture(gl.TEXTURE_2D, this.#logits);
+    gl.bindTexture(gl.TEXTURE_2D, this.#logits ?? null);
     gl.activeTexture(gl.TEXTURE1);
     gl.bindTexture(gl.TEXTURE_2D, this.#controlPoints);
-    resetUnpacking(gl);
     gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, m, 3, gl.RGBA, gl.FLOAT, this.#fill(p, q));
     const { rotation, scale, linear } = anchor(p, q);
     gl.uniform1i(uniforms.logits, 0);
@@ -170,27 +193,27 @@ export class BoundVertices {
     gl.endTransformFeedback();
     gl.disable(gl.RASTERIZER_DISCARD);
     gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, null);
-    gl.bindVertexArray(null);
   }
 
   /** Shows places that were computed elsewhere. */
   show(positions: Float32Array<ArrayBuffer>, normals: Float32Array<ArrayBuffer>): void {
     const { gl } = this.#kernel;
-    gl.bindVertexArray(null);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.positions);
-    gl.bufferSubData(gl.ARRAY_BUFFER, 0, positions);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.normals);
-    gl.bufferSubData(gl.ARRAY_BUFFER, 0, normals);
-    gl.bindBuffer(gl.ARRAY_BUFFER, null);
+    this.#kernel.use(() => {
+      gl.bindBuffer(gl.ARRAY_BUFFER, this.positions);
+      gl.bufferSubData(gl.ARRAY_BUFFER, 0, positions);
+      gl.bindBuffer(gl.ARRAY_BUFFER, this.normals);
+      gl.bufferSubData(gl.ARRAY_BUFFER, 0, normals);
+    });
   }
 
   /** The deformed places as the GPU has them: for checks, as it waits for the GPU. */
   read(): Float32Array<ArrayBuffer> {
     const { gl } = this.#kernel;
     const positions = new Float32Array(3 * this.count);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.positions);
-    gl.getBufferSubData(gl.ARRAY_BUFFER, 0, positions);
-    gl.bindBuffer(gl.ARRAY_BUFFER, null);
+    this.#kernel.use(() => {
+      gl.bindBuffer(gl.ARRAY_BUFFER, this.positions);
+      gl.getBufferSubData(gl.ARRAY_BUFFER, 0, positions);
+    });
     return positions;
   }
 
@@ -218,20 +241,11 @@ export class BoundVertices {
 
 function dataTexture(gl: WebGL2RenderingContext): WebGLTexture {
   const texture = gl.createTexture();
-  resetUnpacking(gl);
   gl.bindTexture(gl.TEXTURE_2D, texture);
   for (const parameter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
     gl.texParameteri(gl.TEXTURE_2D, parameter, gl.NEAREST);
   }
   return texture;
-}
-
-/** Other users of the context may have left images to be turned upside down or their colours multiplied. */
-function resetUnpacking(gl: WebGL2RenderingContext): void {
-  gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
-  gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
-  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
-  gl.pixelStorei(gl.UNPACK_ROW_LENGTH, 0);
 }
 
 function link(gl: WebGL2RenderingContext): WebGLProgram {

@@ -100,7 +100,7 @@ export class ShapeView {
     return this.#drawn;
   }
 
-  /** Computes a frame on the GPU. The renderer's state is to be reset afterwards. */
+  /** Computes a frame on the GPU. */
   deform(motion: GpuMotion): void {
     this.bound.deform(motion);
   }

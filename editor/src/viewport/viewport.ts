@@ -48,8 +48,7 @@ export class Viewport {
     this.#view = view;
     this.stage = new Stage(host);
     const gl = this.stage.renderer.getContext() as WebGL2RenderingContext;
-    this.#kernel = new Kernel(gl);
-    this.stage.renderer.resetState();
+    this.#kernel = new Kernel(gl, () => this.stage.renderer.resetState());
     this.stage.scene.add(this.#markers.object);
     this.#gizmo = new Gizmo(this.stage, this.stage.scene, {
       begin: () => history.begin("Move"),
@@ -117,7 +116,6 @@ export class Viewport {
       if (side === "comparison") this.#remove("comparison");
       else main.bound = undefined;
       main.view.bound.show(main.view.drawn.rest.positions, main.view.drawn.rest.normals);
-      this.stage.renderer.resetState();
       this.invalidate();
       return true;
     }
@@ -126,7 +124,6 @@ export class Viewport {
     if (!shown) return true;
     const colours = new Float32Array(bound.ids.flatMap((_, i) => colourOf(i)));
     const fits = shown.view.bound.setLogits(bound.logits, bound.ids.length, colours);
-    this.stage.renderer.resetState();
     if (fits) shown.bound = bound;
     this.invalidate();
     return fits;
@@ -146,7 +143,6 @@ export class Viewport {
       for (let c = 0; c < 3; c++) places[3 * i + c] = (y[3 * point + c] - this.#box.centre[c]) / this.#box.half;
     });
     main.view.bound.show(places, turned);
-    this.stage.renderer.resetState();
     this.invalidate();
   }
 
@@ -248,7 +244,6 @@ export class Viewport {
       if (motion) side.view.deform(motion);
       side.view.show(side.bound ? this.#view.colouring : "material", this.#view.wireframe);
     }
-    this.stage.renderer.resetState();
     this.#markers.setSize(MARKER_PIXELS, this.stage.renderer.getPixelRatio());
     this.#markers.update(this.#markersOf(session));
     if (gizmo) this.#gizmo.place(this.#pivot(session), session.selection.length > 1 ? this.#view.tool : "translate");
@@ -335,7 +330,6 @@ export class Viewport {
 
   #add(side: Slot, drawn: Drawn): ShapeView {
     const view = new ShapeView(this.#kernel, drawn);
-    this.stage.renderer.resetState();
     this.#sides[side] = { view, bound: undefined };
     this.stage.scene.add(view.object);
     view.object.visible = side === "main";
