@@ -11,11 +11,12 @@ export default defineConfig({
   outputDir: "test-results",
   // Two processors, and a graphics card in software.
   workers: 1,
-  timeout: 120_000,
-  expect: { timeout: 20_000 },
+  timeout: 60_000,
+  expect: { timeout: 10_000 },
   reporter: "list",
   use: {
     viewport: { width: 1280, height: 720 },
+    actionTimeout: 10_000,
     launchOptions: {
       ...(chromium ? { executablePath: chromium } : {}),
       args: [
