@@ -27,6 +27,6 @@ export default defineConfig({
     chunkSizeWarningLimit: 2000,
   },
   test: {
-    include: ["src/**/*.test.{ts,tsx}"],
+    include: ["{src,tests/unit}/**/*.test.{ts,tsx}"],
   },
 });

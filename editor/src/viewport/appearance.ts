@@ -3,7 +3,7 @@
  * is hung on its triangles, corner by corner, if both agree on all of them; else the shape is shown plain.
  */
 
-import { Color, DoubleSide, LoadingManager, type Material, Mesh, type Object3D, Vector3 } from "three";
+import { Color, DoubleSide, LoadingManager, type Material, Mesh, MeshPhongMaterial, MeshStandardMaterial, type Object3D, Vector3 } from "three";
 import type { OpenedShape } from "./drawn.ts";
 import type { CornerData } from "./restVertices.ts";
 
@@ -128,7 +128,7 @@ function collect(opened: OpenedShape, meshes: readonly Mesh[]): Appearance | und
     const [uvs, tints] = ["uv", "color"].map((name) => mesh.geometry.getAttribute(name));
     const used = Array.isArray(mesh.material) ? mesh.material : [mesh.material];
     const first = materials.length;
-    for (const material of used) materials.push(Object.assign(material, { side: DoubleSide }));
+    for (const material of used) materials.push(Object.assign(physical(material), { side: DoubleSide }));
     const parts = own.length > 0 && Array.isArray(mesh.material) ? own : [{ start: 0, count: size(mesh), materialIndex: 0 }];
     for (const { start, count, materialIndex } of parts) {
       groups.push({ start: at + start, count, material: first + (materialIndex ?? 0) });
@@ -142,6 +142,15 @@ function collect(opened: OpenedShape, meshes: readonly Mesh[]): Appearance | und
     }
   }
   return { ...(uv && { uv }), ...(colours && { colours }), groups, materials };
+}
+
+/** MTL files tell of gloss as Phong did; the same in terms of roughness, as all else is shown, and as GLB files have it. */
+function physical(material: Material): Material {
+  if (!(material instanceof MeshPhongMaterial)) return material;
+  const { name, color, map, normalMap, alphaMap, opacity, transparent, vertexColors, shininess } = material;
+  const roughness = Math.sqrt(2 / (2 + shininess));
+  const maps = { map, normalMap, alphaMap };
+  return new MeshStandardMaterial({ name, color, ...maps, opacity, transparent, vertexColors, roughness, metalness: 0 });
 }
 
 /** Gives three's loaders the files that were opened together, and nothing else. */

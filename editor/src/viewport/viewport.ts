@@ -226,6 +226,7 @@ export class Viewport {
     const positions = this.#sides.main?.view.drawn.rest.positions ?? new Float32Array(3);
     const sphere = new Box3().setFromArray(positions).getBoundingSphere(new Sphere());
     for (const { target } of this.#history.session.points) sphere.expandByPoint(this.#toView(target));
+    sphere.radius *= 1.08;
     this.stage.home(sphere);
   }
 
