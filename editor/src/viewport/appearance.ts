@@ -20,6 +20,8 @@ type Files = ReadonlyMap<string, Uint8Array>;
 
 /** Larger files are shown plain: the loaders would hold up the page. */
 const LARGEST_TEXT = 40e6;
+/** Where a PLY file's header ends at the latest, in bytes. */
+const LONGEST_HEADER = 1e5;
 /** Largest difference between the loader's places and the core's, relative to the shape's box. */
 const TOLERANCE = 1e-3;
 
@@ -45,9 +47,11 @@ export async function appearanceOf(opened: OpenedShape, files: Files): Promise<A
 export async function pointColours(opened: OpenedShape, files: Files): Promise<Float32Array<ArrayBuffer> | undefined> {
   const bytes = files.get(opened.name);
   if (!bytes || opened.format !== "PLY") return undefined;
+  const header = new TextDecoder("latin1").decode(bytes.subarray(0, LONGEST_HEADER)).split("end_header")[0];
+  if (!/^property \S+ (red|diffuse_red|f_dc_0)\s*$/m.test(header)) return undefined;
   const { PLYLoader } = await import("three/addons/loaders/PLYLoader.js");
   const loader = new PLYLoader();
-  loader.setCustomPropertyNameMapping({ harmonics: ["f_dc_0", "f_dc_1", "f_dc_2"] });
+  if (header.includes("f_dc_0")) loader.setCustomPropertyNameMapping({ harmonics: ["f_dc_0", "f_dc_1", "f_dc_2"] });
   try {
     const geometry = loader.parse(bytes.slice().buffer);
     const count = opened.positions.length;

@@ -105,7 +105,8 @@ function describe(shape: ShapeFile, name: string, x: Float64Array<ArrayBuffer>, 
   const wide = widen(x, dim);
   const { bounds, frame } = measure(wide);
   const facts = shape.facts();
-  const missing = shape.named_files().filter((path) => !found(path));
+  const namedFiles = [...new Set(shape.named_files())];
+  const missing = namedFiles.filter((path) => !found(path));
   return {
     name,
     format: shape.format(),
@@ -118,7 +119,7 @@ function describe(shape: ShapeFile, name: string, x: Float64Array<ArrayBuffer>, 
     bounds,
     facts: facts.flatMap((fact, at) => (at % 2 ? [] : [[fact, facts[at + 1]!] as [string, string]])),
     hasNormals: shape.has_normals(),
-    namedFiles: shape.named_files(),
+    namedFiles,
     warnings: missing.length ? [`${name} names ${missing.join(", ")}, which you did not open along with it`] : [],
   };
 }

@@ -45,8 +45,9 @@ describe("the anchor", () => {
   });
 
   it("of one, two or aligned control points that only shift is the identity", () => {
-    for (const p of [points(1), points(2), [0, 0, 0, 1, 2, 3, 2, 4, 6]]) {
-      const found = anchor(p, p.map((c) => c + 0.7));
+    // Numbers that shift without rounding: along what is open, an error of 1e-16 counts against a ridge of 1e-12.
+    for (const p of [[0.25, 0.5, -0.75], [0.25, 0.5, -0.75, 1, -2, 0.5], [0, 0, 0, 1, 2, 3, 2, 4, 6]]) {
+      const found = anchor(p, p.map((c) => c + 0.5));
       close(found.rotation, IDENTITY);
       close(found.linear, IDENTITY);
     }
