@@ -7,7 +7,10 @@ const chromium = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-
 );
 
 export default defineConfig({
-  testDir: "tests/e2e",
+  projects: [
+    { name: "e2e", testDir: "tests/e2e" },
+    { name: "bench", testDir: "tests/bench" },
+  ],
   outputDir: "test-results",
   // Two processors, and a graphics card in software.
   workers: 1,

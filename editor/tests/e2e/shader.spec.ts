@@ -1,73 +1,17 @@
 /** The shader solves the same problem as the core, by the same rule: 1e-4 of the box, whatever the map and the temperature. */
 
-import { existsSync, readFileSync } from "node:fs";
-import { join } from "node:path";
 import { expect, test } from "@playwright/test";
-import { data, samples } from "./tools.ts";
+import { compare, published, sample } from "./cases.ts";
 
-type Compared = { transform: string; temperature: number; worst: number; moved: number };
-
-declare global {
-  interface Window {
-    compare(name: string, base64: string, p: number[], q: number[], weights: object, motions: object[]): Promise<Compared[]>;
-  }
-}
-
-const motions = ["rigid", "similarity", "affine"].flatMap((transform) =>
-  [0.3, 1, 3].map((temperature) => ({ transform, temperature })),
-);
 const neural = { kind: "neural", width: 1024, seed: 0, steps: null };
 const classic = { kind: "classic", alpha: 1, epsilon: 0 };
-
-interface Case {
-  name: string;
-  file: Buffer;
-  p: number[][];
-  q: number[][];
-}
-
-function sample(name: string): Case {
-  const { control_points } = JSON.parse(readFileSync(join(samples, `${name}.points.json`), "utf8"));
-  const p: number[][] = control_points.map((point: { position: number[] }) => point.position);
-  const size = Math.max(...p.flat().map(Math.abs)); // samples have the sizes of the real things
-  const q = p.map((x, i) => x.map((c, k) => c + 0.15 * size * Math.sin(1 + 2 * i + 3 * k)));
-  return { name, file: readFileSync(join(samples, `${name}.obj`)), p, q };
-}
-
-/** A published case on a shape of ShapeNet: coordinates relative to its box. */
-function published(): Case | null {
-  const folder = data && join(data, "shapenet");
-  if (!folder || !existsSync(join(folder, "ShapeNetChair1/model.obj"))) return null;
-  const file = readFileSync(join(folder, "ShapeNetChair1/model.obj"));
-  const given = JSON.parse(readFileSync(join(folder, "control_points.json"), "utf8")).ShapeNetChair1;
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  for (const line of file.toString().split("\n")) {
-    if (!line.startsWith("v ")) continue;
-    line.split(/\s+/).slice(1, 4).forEach((text, k) => {
-      low[k] = Math.min(low[k], Number(text));
-      high[k] = Math.max(high[k], Number(text));
-    });
-  }
-  const half = Math.max(...low.map((l, k) => high[k] - l)) / 2;
-  const p: number[][] = given.control_points.map((x: number[]) => x.map((c, k) => c * half + (low[k] + high[k]) / 2));
-  const q = p.map((x, i) => x.map((c, k) => c + half * given.offsets.user_study_1[i][k]));
-  return { name: "ShapeNetChair1", file, p, q };
-}
 
 for (const name of ["chair", "airplane", "car", "table", "ShapeNetChair1"]) {
   test(`the shader agrees with the core: ${name}`, async ({ page }) => {
     const given = name === "ShapeNetChair1" ? published() : sample(name);
     test.skip(!given, "there is no folder of real files: set NEURALMLS_DATA");
-    const { file, p, q } = given!;
-    await page.goto("http://localhost:8418/tests/e2e/pages/shader.html");
-    await page.waitForFunction(() => window.compare);
     for (const weights of [neural, classic]) {
-      const compared = await page.evaluate(
-        ([base64, p, q, weights, motions]) => window.compare("shape.obj", base64, p, q, weights, motions),
-        [file.toString("base64"), p.flat(), q.flat(), weights, motions] as const,
-      );
-      for (const { transform, temperature, worst, moved } of compared) {
+      for (const { transform, temperature, worst, moved } of await compare(page, given!, weights)) {
         const what = `${weights.kind}, ${transform}, T = ${temperature}`;
         test.info().annotations.push({ type: "error", description: `${what}: ${worst.toExponential(1)}` });
         expect(moved, what).toBeGreaterThan(0.01);
