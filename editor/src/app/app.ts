@@ -99,7 +99,7 @@ export class App {
       const opened = await this.#core.open(files, name, { progress, signal });
       this.#weights.forget();
       const { hasAppearance } = await this.display.showShape(opened, files);
-      this.store.set({ shape: { opened, files, hasAppearance }, recovery: null });
+      this.store.set({ shape: { opened, files, hasAppearance }, recovery: null, toasts: [] });
       this.setView({ ...DEFAULT_VIEW, adding: this.store.value.view.adding });
       this.history.reset(EMPTY_SESSION);
       for (const warning of opened.warnings) this.toast("warning", warning);

@@ -1,12 +1,13 @@
 /** Camera, lights and the drawing surface; draws when something has changed, not otherwise. */
 
 import {
+  Box3,
   DirectionalLight,
   HemisphereLight,
   MOUSE,
   PerspectiveCamera,
   Scene,
-  Sphere,
+  type Sphere,
   TOUCH,
   Vector3,
   WebGLRenderer,
@@ -14,6 +15,8 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 const FIELD_OF_VIEW = 32;
+/** Room around the shape. */
+const MARGIN = 1.22;
 
 export class Stage {
   readonly scene = new Scene();
@@ -59,7 +62,7 @@ export class Stage {
     this.orbit.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.PAN, RIGHT: MOUSE.PAN };
     this.orbit.touches = { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_PAN };
     this.orbit.addEventListener("change", () => this.request());
-    this.home(new Sphere(new Vector3(), 1));
+    this.home([new Vector3(-1, -1, -1), new Vector3(1, 1, 1)]);
   }
 
   get split(): boolean {
@@ -78,6 +81,7 @@ export class Stage {
 
   draw(): void {
     const start = performance.now();
+    this.#setDepths();
     this.onFrame();
     this.#render();
     this.onDrawn(start);
@@ -119,28 +123,47 @@ export class Stage {
     this.request();
   }
 
-  /** Shows all of the shape, which lies within a sphere, from the front and a little above. */
-  home(sphere: Sphere): void {
-    this.camera.position.set(2.6, 1.5, 4.2);
-    this.orbit.target.set(0, 0, 0);
-    this.#lookAt(sphere);
+  /** Shows all of some places from the front and a little above. */
+  home(places: readonly Vector3[]): void {
+    const { camera, orbit } = this;
+    camera.position.set(2.6, 1.5, 4.2);
+    orbit.target.copy(new Box3().setFromPoints([...places]).getCenter(new Vector3()));
+    camera.position.add(orbit.target);
+    camera.lookAt(orbit.target);
+    camera.updateMatrixWorld();
+    // So far away that every place is within the window's four sides.
+    const up = Math.tan((FIELD_OF_VIEW / 360) * Math.PI) / MARGIN;
+    const [right, above, towards] = [0, 1, 2].map((axis) => new Vector3().setFromMatrixColumn(camera.matrixWorld, axis));
+    let away = 0.1;
+    for (const place of places) {
+      const arm = place.clone().sub(orbit.target);
+      const side = Math.max(Math.abs(arm.dot(above)) / up, Math.abs(arm.dot(right)) / (up * camera.aspect));
+      away = Math.max(away, side + arm.dot(towards));
+    }
+    this.#goTo(away);
   }
 
   /** Turns to a place without changing the direction of view. */
   focus(sphere: Sphere): void {
-    this.#lookAt(sphere);
+    const from = this.camera.position.clone().sub(this.orbit.target);
+    this.orbit.target.copy(sphere.center);
+    this.camera.position.copy(sphere.center).add(from);
+    const narrow = Math.min(1, this.camera.aspect);
+    this.#goTo(sphere.radius / Math.sin((FIELD_OF_VIEW / 360) * Math.PI) / narrow);
   }
 
-  #lookAt(sphere: Sphere): void {
-    const narrow = Math.min(1, this.camera.aspect);
-    const away = sphere.radius / Math.sin((FIELD_OF_VIEW / 360) * Math.PI) / narrow;
-    const from = this.camera.position.clone().sub(this.orbit.target).normalize();
-    this.orbit.target.copy(sphere.center);
-    this.camera.position.copy(sphere.center).addScaledVector(from, away);
-    this.camera.near = Math.max(0.001, away / 200);
-    this.camera.far = away + 60;
-    this.camera.updateProjectionMatrix();
-    this.orbit.update();
+  #goTo(away: number): void {
+    const { camera, orbit } = this;
+    camera.position.sub(orbit.target).setLength(away).add(orbit.target);
+    orbit.update();
     this.request();
+  }
+
+  /** Neither what is near nor what is far is cut off. */
+  #setDepths(): void {
+    const away = this.camera.position.distanceTo(this.orbit.target);
+    this.camera.near = Math.max(0.002, away / 60);
+    this.camera.far = away + 20;
+    this.camera.updateProjectionMatrix();
   }
 }

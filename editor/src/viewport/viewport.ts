@@ -223,11 +223,13 @@ export class Viewport {
 
   /** Looks at the shape, at rest and with the targets of its control points. */
   #home(): void {
-    const positions = this.#sides.main?.view.drawn.rest.positions ?? new Float32Array(3);
-    const sphere = new Box3().setFromArray(positions).getBoundingSphere(new Sphere());
-    for (const { target } of this.#history.session.points) sphere.expandByPoint(this.#toView(target));
-    sphere.radius *= 1.08;
-    this.stage.home(sphere);
+    const positions = this.#sides.main?.view.drawn.rest.positions;
+    if (!positions) return;
+    const { min, max } = new Box3().setFromArray(positions);
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(
+      (i) => new Vector3(i & 1 ? min.x : max.x, i & 2 ? min.y : max.y, i & 4 ? min.z : max.z),
+    );
+    this.stage.home([...corners, ...this.#history.session.points.map((point) => this.#toView(point.target))]);
   }
 
   #drag(to: (place: Vec3) => Vec3): void {
