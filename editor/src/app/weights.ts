@@ -168,7 +168,8 @@ export class Weights {
         const { session } = this.#history;
         const bound = this.#bound.main;
         const motion = this.motion(session);
-        if (!bound || !motion) return;
+        // While others are fitted the core answers for them; it is asked again when they are there.
+        if (!bound || !motion || this.#store.value.fit.status !== "ready") return;
         let landed: Float64Array;
         if (this.#store.value.slowFrames) {
           const { positions, maps, controlPoints } = await this.#core.deform(motion);

@@ -4,7 +4,7 @@ import { twinOf } from "../model/mirror.ts";
 import { type ControlPoint, isMoved } from "../model/session.ts";
 import { AXES } from "../model/vec3.ts";
 import { cssColour } from "../model/view.ts";
-import { Button, NumberField, Section, Segmented, short } from "./controls.tsx";
+import { Button, distance, NumberField, Section, Segmented } from "./controls.tsx";
 import { Icon } from "./icons.tsx";
 import { PointFields } from "./PointFields.tsx";
 import { useApp, useAppState } from "./useStore.ts";
@@ -89,7 +89,7 @@ function PointList({ points }: { points: readonly ControlPoint[] }) {
               {twin !== null && twin !== undefined && <small title="Its twin">↔ {names.get(twin)}</small>}
               {point.locked && <Icon name="lock" />}
               <span class={`distance ${short_ ? "short" : ""}`} title="How far it ends from its target">
-                {isMoved(point) && away !== undefined ? short(Number(away.toPrecision(2))) : ""}
+                {isMoved(point) && away !== undefined ? distance(away, size) : ""}
               </span>
             </button>
           </li>

@@ -1,6 +1,6 @@
 import type { FitState } from "../app/state.ts";
 import { isMoved } from "../model/session.ts";
-import { short } from "./controls.tsx";
+import { distance } from "./controls.tsx";
 import { useAppState } from "./useStore.ts";
 
 /** How things stand, quietly. */
@@ -17,7 +17,7 @@ export function StatusBar() {
       </span>
       {away.length > 0 && (
         <span title="The largest distance of a control point from its target">
-          off target by at most {short(Number(Math.max(...away).toPrecision(2)))} ({percent(Math.max(...away) / (2 * shape.opened.frame.half))})
+          off target by at most {distance(Math.max(...away), 2 * shape.opened.frame.half)} ({percent(Math.max(...away) / (2 * shape.opened.frame.half))})
         </span>
       )}
       {slowFrames && <span>too many weights for the graphics card: frames are computed by the core</span>}

@@ -154,6 +154,9 @@ export function NumberField({ label, value, min, max, whole, disabled, prefix, s
 /** A number as one reads it: six digits are enough. */
 export const short = (value: number): string => String(Number(value.toPrecision(6)));
 
+/** A distance with two digits; what cannot be seen on a shape of that size is none. */
+export const distance = (away: number, size: number): string => (away < 1e-7 * size ? "0" : short(Number(away.toPrecision(2))));
+
 interface MenuProps {
   label: string;
   icon?: IconName;

@@ -196,7 +196,7 @@ export class BoundVertices {
   }
 
   /** Shows places that were computed elsewhere. */
-  show(positions: Float32Array<ArrayBuffer>, normals: Float32Array<ArrayBuffer>): void {
+  show({ positions, normals }: Pick<RestVertices, "positions" | "normals">): void {
     const { gl } = this.#kernel;
     this.#kernel.use(() => {
       gl.bindBuffer(gl.ARRAY_BUFFER, this.positions);

@@ -8,7 +8,7 @@ import { leader, type PointId, selected, type Session } from "../model/session.t
 import type { Slot } from "../model/slot.ts";
 import type { Vec3 } from "../model/vec3.ts";
 import type { View } from "../model/view.ts";
-import { type GpuMotion, Kernel } from "../shader/kernel.ts";
+import { type GpuMotion, Kernel, type RestVertices } from "../shader/kernel.ts";
 import { Gizmo } from "./gizmo.ts";
 import { colourOf, type Marker, Markers } from "./markers.ts";
 import { type Hit, Picking } from "./picking.ts";
@@ -25,6 +25,9 @@ export interface Bound {
   logits: Float32Array;
 }
 
+/** Vertices as the core has computed them. */
+type Frame = Pick<RestVertices, "positions" | "normals">;
+
 /** Pixels of a control point's disc. */
 const MARKER_PIXELS = 17;
 
@@ -35,7 +38,7 @@ export class Viewport {
   readonly #markers = new Markers();
   readonly #gizmo: Gizmo;
   readonly #pointer: Pointer;
-  readonly #sides: Partial<Record<Slot, { view: ShapeView; bound: Bound | undefined }>> = {};
+  readonly #sides: Partial<Record<Slot, { view: ShapeView; bound: Bound | undefined; frame?: Frame }>> = {};
   #picking: Picking | undefined;
   #box: Box = { centre: [0, 0, 0], half: 1 };
   #view: View;
@@ -114,8 +117,11 @@ export class Viewport {
     if (!main) return true;
     if (!bound) {
       if (side === "comparison") this.#remove("comparison");
-      else main.bound = undefined;
-      main.view.bound.show(main.view.drawn.rest.positions, main.view.drawn.rest.normals);
+      else {
+        main.bound = undefined;
+        delete main.frame;
+        main.view.bound.show(main.view.drawn.rest);
+      }
       this.invalidate();
       return true;
     }
@@ -124,7 +130,8 @@ export class Viewport {
     if (!shown) return true;
     const colours = new Float32Array(bound.ids.flatMap((_, i) => colourOf(i)));
     const fits = shown.view.bound.setLogits(bound.logits, bound.ids.length, colours);
-    if (fits) shown.bound = bound;
+    shown.bound = fits ? bound : undefined;
+    delete shown.frame;
     this.invalidate();
     return fits;
   }
@@ -142,7 +149,7 @@ export class Viewport {
       normal.toArray(turned, 3 * i);
       for (let c = 0; c < 3; c++) places[3 * i + c] = (y[3 * point + c] - this.#box.centre[c]) / this.#box.half;
     });
-    main.view.bound.show(places, turned);
+    main.frame = { positions: places, normals: turned };
     this.invalidate();
   }
 
@@ -221,6 +228,11 @@ export class Viewport {
     this.stage.request();
   }
 
+  /** Whether the shape is shown as it was, because one asks for it or moves control points at rest. */
+  get #atRest(): boolean {
+    return this.#view.before || this.#view.moves === "position";
+  }
+
   /** Looks at the shape, at rest and with the targets of its control points. */
   #home(): void {
     const positions = this.#sides.main?.view.drawn.rest.positions;
@@ -245,6 +257,7 @@ export class Viewport {
     for (const side of Object.values(this.#sides)) {
       const motion = side.bound && this.#motion(side.bound, session);
       if (motion) side.view.deform(motion);
+      else if (side.frame) side.view.bound.show(this.#atRest ? side.view.drawn.rest : side.frame);
       side.view.show(side.bound ? this.#view.colouring : "material", this.#view.wireframe);
     }
     this.#markers.setSize(MARKER_PIXELS, this.stage.renderer.getPixelRatio());
@@ -267,7 +280,7 @@ export class Viewport {
     const enter = (coordinate: number, at: number): number => (coordinate - centre[at % 3]) / half;
     const places = p.map(enter);
     const targets = places.slice();
-    if (!this.#view.before && this.#view.moves === "target") {
+    if (!this.#atRest) {
       const byId = new Map(session.points.map((point) => [point.id, point]));
       ids.forEach((id, i) => {
         const point = byId.get(id);
