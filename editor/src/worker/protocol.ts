@@ -5,7 +5,11 @@
  * the shape's box. Symbols as in ARCHITECTURE.md: x points, p control points, q targets, n points, m control points.
  */
 
-export type Transform = "rigid" | "similarity" | "affine";
+import type { Transform } from "../model/settings.ts";
+import type { Slot } from "../model/slot.ts";
+import type { Vec3 } from "../model/vec3.ts";
+
+export type { Slot, Transform, Vec3 };
 
 /** Files that belong together, by name: a shape, its materials, textures and buffers. */
 export type Files = ReadonlyMap<string, Uint8Array>;
@@ -38,8 +42,6 @@ export interface Opened {
   /** Sentences for a toast: named files that were not given. */
   warnings: string[];
 }
-
-export type Vec3 = [number, number, number];
 
 export interface Frame {
   centre: Vec3;
@@ -111,9 +113,6 @@ export interface Deformed {
 export interface Saved {
   files: { name: string; bytes: Uint8Array<ArrayBuffer> }[];
 }
-
-/** Which of the fits that live side by side; a fit cancels the older one of its slot only. */
-export type Slot = "main" | "comparison";
 
 /** Tells how far a call is: a stage, and the fraction of it done (0 to 1). */
 export type OnProgress = (stage: Stage, fraction: number) => void;
