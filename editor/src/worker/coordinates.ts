@@ -36,8 +36,8 @@ export function widenMaps(maps: Float64Array<ArrayBuffer>, dim: number): Float64
 
 /** The box of points, n x 3, and the frame by which it becomes [-1, 1]; refused where there is no size to measure by. */
 export function measure(points: Float64Array): { bounds: { min: Vec3; max: Vec3 }; frame: Frame } {
-  const min: Vec3 = [Infinity, Infinity, Infinity];
-  const max: Vec3 = [-Infinity, -Infinity, -Infinity];
+  const min: [number, number, number] = [Infinity, Infinity, Infinity];
+  const max: [number, number, number] = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < points.length; i++) {
     const k = i % 3;
     if (points[i]! < min[k]!) min[k] = points[i]!;
@@ -52,7 +52,7 @@ export function measure(points: Float64Array): { bounds: { min: Vec3; max: Vec3 
   if (!(size < 1e150)) {
     throw new CoreError("the shape is more than 1e150 units long: no coordinates of a real thing");
   }
-  const centre = min.map((low, k) => low + 0.5 * (max[k]! - low)) as Vec3;
+  const centre = min.map((low, k) => low + 0.5 * (max[k]! - low)) as [number, number, number];
   return { bounds: { min, max }, frame: { centre, half: 0.5 * size } };
 }
 

@@ -67,8 +67,6 @@ export type WeightsSpec =
       epsilon: number;
     };
 
-export const DEFAULT_NEURAL = { kind: "neural", width: 1024, seed: 0, steps: null } as const satisfies WeightsSpec;
-export const DEFAULT_CLASSIC = { kind: "classic", alpha: 1, epsilon: 0 } as const satisfies WeightsSpec;
 
 /** A weight function evaluated. */
 export interface Fitted {
