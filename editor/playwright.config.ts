@@ -37,6 +37,7 @@ export default defineConfig({
   webServer: {
     // Pages of single parts, straight from their sources; the built editor is served by the package (fixtures.ts).
     command: "npx vite --port 8418 --strictPort",
+    env: { NEURALMLS_TEST: "1" },
     port: 8418,
   },
 });

@@ -17,6 +17,8 @@ export default defineConfig({
       ],
     },
   ],
+  // A page under test must not be loaded anew because a file has changed.
+  ...(process.env.NEURALMLS_TEST ? { server: { hmr: false, watch: null } } : {}),
   worker: { format: "es" },
   build: {
     outDir: "../python/neuralmls/editor_server/static",
