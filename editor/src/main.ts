@@ -24,12 +24,22 @@ const history = new History(EMPTY_SESSION);
 const store = new Store({ ...INITIAL_STATE, theme: (localStorage.getItem(THEME_KEY) ?? "system") as Theme });
 const host = document.createElement("div");
 host.className = "canvas-host";
-const viewport = new Viewport(host, history, store.value.view);
+const root = document.getElementById("app") as HTMLElement;
+const viewport = startViewport();
+
+function startViewport(): Viewport {
+  try {
+    return new Viewport(host, history, store.value.view);
+  } catch (error) {
+    root.textContent = "The editor needs WebGL 2, which this browser does not offer here: another one, or another graphics driver, may.";
+    throw error;
+  }
+}
 
 const display: Display = {
   async showShape(opened, files) {
     const { drawn, mesh, hasAppearance } = await draw(opened, files);
-    viewport.setShape(drawn, opened.frame, mesh);
+    viewport.setShape(drawn, opened.frame, opened.dim, mesh);
     return { hasAppearance };
   },
   setWeights: (slot, weights) => viewport.setWeights(slot, weights),
@@ -45,7 +55,7 @@ const display: Display = {
   async page(title) {
     const { drawn, bound } = viewport;
     if (!drawn || !bound) throw new Error("There are no control points yet.");
-    return page(title, drawn, viewport.box, bound, history.session);
+    return page(title, drawn, viewport.box, store.value.shape?.opened.dim ?? 3, bound, history.session);
   },
 };
 
@@ -54,7 +64,10 @@ const app = new App(core, new Autosave(), history, store, display);
 store.subscribe(({ theme }, before) => {
   if (theme !== before.theme) localStorage.setItem(THEME_KEY, theme);
 });
-render(createElement(Root, { app, host }), document.getElementById("app") as HTMLElement);
+render(createElement(Root, { app, host }), root);
+viewport.stage.renderer.domElement.addEventListener("webglcontextlost", () => {
+  app.toast("error", "The browser has lost the graphics card: reload the page, your work is kept.");
+});
 listenToKeys(app);
 listenToDrops(app);
 void app.start(fetchSamples());

@@ -8,6 +8,7 @@ import type { Drawn } from "../viewport/shapeView.ts";
 export interface Bundle {
   title: string;
   box: Box;
+  dim: 1 | 2 | 3;
   session: Session;
   /** The control points that the weights are for, and where they were. */
   ids: readonly number[];

@@ -12,12 +12,13 @@ interface Bound {
   logits: Float32Array;
 }
 
-export async function page(title: string, drawn: Drawn, box: Box, bound: Bound, session: Session): Promise<string> {
+export async function page(title: string, drawn: Drawn, box: Box, dim: 1 | 2 | 3, bound: Bound, session: Session): Promise<string> {
   const response = await fetch("./offline.js");
   if (!response.ok) throw new Error("This copy of the editor has no offline.js, which the page to drag is made of.");
   const bundle: Bundle = {
     title,
     box: { centre: box.centre, half: box.half },
+    dim,
     session: { ...session, selection: [] },
     ids: bound.ids,
     p: [...bound.p],

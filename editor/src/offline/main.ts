@@ -28,6 +28,7 @@ viewport.setShape(
     materials: bundle.materials.map((material) => unpackMaterial(material, () => viewport.invalidate())),
   },
   bundle.box,
+  bundle.dim,
   undefined,
 );
 viewport.setWeights("main", { ids: bundle.ids, p: Float64Array.from(bundle.p), logits: decodeFloats(bundle.logits) });

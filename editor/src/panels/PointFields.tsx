@@ -62,7 +62,13 @@ function NameField({ point }: { point: ControlPoint }) {
       value={name}
       onInput={(event) => setName(event.currentTarget.value)}
       onBlur={take}
-      onKeyDown={(event) => event.key === "Enter" && take()}
+      onKeyDown={(event) => {
+        if (event.key === "Enter") take();
+        if (event.key === "Escape") {
+          event.stopPropagation();
+          setName(point.name);
+        }
+      }}
     />
   );
 }

@@ -118,7 +118,6 @@ interface NumberFieldProps {
 /** A number to be typed; taken with Enter or when the field is left. What is no number is forgotten. */
 export function NumberField({ label, value, min, max, whole, disabled, prefix, shown, onChange }: NumberFieldProps) {
   const [text, setText] = useState<string | null>(null);
-  const field = useRef<HTMLInputElement>(null);
   const take = (): void => {
     const number = text === null || text.trim() === "" ? Number.NaN : Number(text.replace(",", "."));
     setText(null);
@@ -130,7 +129,6 @@ export function NumberField({ label, value, min, max, whole, disabled, prefix, s
     <span class="number">
       {prefix && <span aria-hidden="true">{prefix}</span>}
       <input
-        ref={field}
         type="text"
         inputMode="decimal"
         aria-label={label}
@@ -142,8 +140,8 @@ export function NumberField({ label, value, min, max, whole, disabled, prefix, s
         onKeyDown={(event) => {
           if (event.key === "Enter") take();
           if (event.key === "Escape") {
+            event.stopPropagation();
             setText(null);
-            field.current?.blur();
           }
         }}
       />

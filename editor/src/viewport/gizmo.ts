@@ -39,6 +39,11 @@ export class Gizmo {
     });
   }
 
+  /** Only the axes that the shape has. */
+  setDimension(dim: 1 | 2 | 3): void {
+    Object.assign(this.#controls, { showY: dim > 1, showZ: dim > 2, showXY: dim > 1, showYZ: dim > 2, showXZ: dim > 2 });
+  }
+
   get dragging(): boolean {
     return this.#controls.dragging;
   }

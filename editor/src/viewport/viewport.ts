@@ -41,6 +41,7 @@ export class Viewport {
   readonly #sides: Partial<Record<Slot, { view: ShapeView; bound: Bound | undefined; frame?: Frame }>> = {};
   #picking: Picking | undefined;
   #box: Box = { centre: [0, 0, 0], half: 1 };
+  #dim: 1 | 2 | 3 = 3;
   #view: View;
   #stale = true;
   /** Milliseconds of handlers since the last frame. */
@@ -100,10 +101,12 @@ export class Viewport {
   }
 
   /** Shows another shape. */
-  setShape(drawn: Drawn, box: Box, mesh: { index: Uint32Array; bvh: SerializedBVH } | undefined): void {
+  setShape(drawn: Drawn, box: Box, dim: 1 | 2 | 3, mesh: { index: Uint32Array; bvh: SerializedBVH } | undefined): void {
     this.#remove("comparison");
     this.#remove("main");
     this.#box = box;
+    this.#dim = dim;
+    this.#gizmo.setDimension(dim);
     this.#pointer.step = niceStep(box.half / 20) / box.half;
     const view = this.#add("main", drawn);
     this.#picking = new Picking(drawn.rest.positions, () => view.bound.read(), mesh);
@@ -373,7 +376,9 @@ export class Viewport {
 
   #toFile(place: Vector3): Vec3 {
     const { centre, half } = this.#box;
-    return [centre[0] + half * place.x, centre[1] + half * place.y, centre[2] + half * place.z];
+    const y = this.#dim > 1 ? centre[1] + half * place.y : 0;
+    const z = this.#dim > 2 ? centre[2] + half * place.z : 0;
+    return [centre[0] + half * place.x, y, z];
   }
 }
 

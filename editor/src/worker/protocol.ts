@@ -48,7 +48,7 @@ export interface Frame {
   half: number;
 }
 
-/** A weight function. The defaults are those of `neuralmls deform`. */
+/** A weight function. */
 export type WeightsSpec =
   | {
       kind: "neural";
@@ -66,7 +66,6 @@ export type WeightsSpec =
       /** >= 0, in units of half of the box's longest side */
       epsilon: number;
     };
-
 
 /** A weight function evaluated. */
 export interface Fitted {
