@@ -156,6 +156,16 @@ def test_without_a_graphics_library_its_package_is_named(monkeypatch: pytest.Mon
 
 def test_a_long_title_stays_in_its_panel() -> None:
     picture = np.full((40, 160, 3), 255, dtype=np.uint8)
-    page = np.asarray(Image.open(io.BytesIO(png([picture, picture], ["", "folder/" * 40 + "chair.obj"], 320))))
+    drawn = png([picture, picture], ["", "folder/" * 40 + "chair.obj"], 320, columns=2)
+    page = np.asarray(Image.open(io.BytesIO(drawn)))
     assert (page[:, :160] == 255).all()
     assert (page[:, 160:] < 128).any()
+
+
+def test_panels_fill_rows_from_the_left() -> None:
+    picture = np.zeros((40, 80, 3), dtype=np.uint8)
+    page = np.asarray(Image.open(io.BytesIO(png([picture] * 3, ["", "", ""], 160, columns=2))))
+    dark = (page == 0).all(axis=2)
+    assert dark[:, :80].sum() == 2 * 40 * 80
+    assert dark[:, 80:].sum() == 40 * 80
+    assert not dark[page.shape[0] // 2 :, 80:].any()

@@ -17,7 +17,8 @@ from neuralmls._core import VERSION as __version__
 if TYPE_CHECKING:
     from neuralmls.control_points import ControlPoints
     from neuralmls.deformer import Deformer
-    from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
+    from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError, NotApplicable
+    from neuralmls.exact import Aim, ExactHandles
     from neuralmls.pipeline import deform
     from neuralmls.placement import farthest_points
     from neuralmls.point_tree import PointTree
@@ -26,14 +27,17 @@ if TYPE_CHECKING:
     from neuralmls.weights.softmax import softmax
 
 __all__ = [
+    "Aim",
     "ArgumentError",
     "ControlPointError",
     "ControlPoints",
     "Deformer",
+    "ExactHandles",
     "FileError",
     "InverseDistanceWeights",
     "NeuralMLSError",
     "NeuralWeights",
+    "NotApplicable",
     "PointTree",
     "Shape",
     "Weights",
@@ -47,14 +51,17 @@ __all__ = [
 # Which module has which name. They are imported when first asked for: `neuralmls --help` need not wait for numpy.
 # No module may be called like a name that another one gives: importing it would hide that name.
 _HOMES = {
+    "Aim": "exact",
     "ArgumentError": "errors",
     "ControlPointError": "errors",
     "ControlPoints": "control_points",
     "Deformer": "deformer",
+    "ExactHandles": "exact",
     "FileError": "errors",
     "InverseDistanceWeights": "weights",
     "NeuralMLSError": "errors",
     "NeuralWeights": "weights",
+    "NotApplicable": "errors",
     "PointTree": "point_tree",
     "Shape": "shape",
     "Weights": "weights",

@@ -94,3 +94,9 @@ class Deformer:
         out: NDArray[np.float64] | None,
         progress: _Progress,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]: ...
+
+class ExactHandles:
+    def __new__(cls, p: NDArray[np.float64], logits: NDArray[np.float32], transform: str) -> ExactHandles: ...
+    def aim(
+        self, q: NDArray[np.float64], temperature: float, adherence: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...

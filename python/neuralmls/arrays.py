@@ -32,8 +32,9 @@ def as_points(name: str, values: ArrayLike, dimension: int | None = None) -> NDA
         raise ArgumentError(f"{name}: expected an (n, d) array with d = 1, 2 or 3, found shape {points.shape}")
     if dimension is not None and points.shape[1] != dimension:
         raise ArgumentError(f"{name}: expected {dimension} coordinates a point, found {points.shape[1]}")
-    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
-    if bad.size:
+    finite = np.isfinite(points)
+    if not finite.all():  # by far quicker than row by row
+        bad = np.flatnonzero(~finite.all(axis=1))
         raise ArgumentError(f"{name}: point {bad[0]} has a coordinate that is not finite")
     return points
 

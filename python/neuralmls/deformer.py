@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Literal, TypeAlias, overload
 
 import numpy as np
@@ -10,10 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from neuralmls import _core
 from neuralmls.arrays import Progress, as_number, as_points
 from neuralmls.errors import ArgumentError
+from neuralmls.exact import ExactHandles
 from neuralmls.point_tree import PointTree
-from neuralmls.protocol import Weights
+from neuralmls.protocol import Transform, Weights
 
-Transform: TypeAlias = Literal["rigid", "similarity", "affine"]
 Floats: TypeAlias = NDArray[np.floating]
 
 
@@ -77,9 +78,14 @@ class Deformer:
         )
         if logits.shape != (len(points), len(p)):
             raise ArgumentError(f"logits: expected shape {(len(points), len(p))}, found {logits.shape}")
+        self._weights, self._transform = weights, transform
         self._p = p
         self._count = len(points)
         self._core = _core.Deformer(points, p, logits, transform)
+
+    @cached_property
+    def _handles(self) -> ExactHandles:
+        return ExactHandles(self._weights, transform=self._transform)
 
     @overload
     def deform(
@@ -87,6 +93,7 @@ class Deformer:
         targets: ArrayLike,
         temperature: float = ...,
         *,
+        adherence: float = ...,
         return_maps: Literal[False] = ...,
         out: NDArray[np.float64] | None = ...,
         progress: Progress | None = ...,
@@ -98,6 +105,7 @@ class Deformer:
         targets: ArrayLike,
         temperature: float = ...,
         *,
+        adherence: float = ...,
         return_maps: Literal[True],
         out: NDArray[np.float64] | None = ...,
         progress: Progress | None = ...,
@@ -108,6 +116,7 @@ class Deformer:
         targets: ArrayLike,
         temperature: float = 1.0,
         *,
+        adherence: float = 0.0,
         return_maps: bool = False,
         out: NDArray[np.float64] | None = None,
         progress: Progress | None = None,
@@ -120,6 +129,9 @@ class Deformer:
             The control points moved, `q`. If all are where they were, the points are returned bit for bit.
         temperature : float > 0
             Of the softmax: below 1 parts move more apart from each other, above 1 more together.
+        adherence : float, 0 to 1
+            0: plain moving least squares, which takes the control points near their targets; 1: they arrive, see
+            `ExactHandles`.
         return_maps : bool
             Also return the local maps `M`, (n, d, d) float64.
         out : (n, d) C-contiguous float64, optional
@@ -134,7 +146,8 @@ class Deformer:
         Raises
         ------
         ArgumentError
-            The targets are not as many finite points as there are control points; the temperature is not above 0.
+            The targets are not as many finite points as there are control points; the temperature is not above 0;
+            the adherence is not from 0 to 1.
         """
         q = as_points("targets", targets, self._p.shape[1])
         if len(q) != len(self._p):
@@ -148,6 +161,8 @@ class Deformer:
             and out.flags.writeable
         ):
             raise ArgumentError(f"out: expected a writeable C-contiguous float64 array {(self._count, q.shape[1])}")
+        if adherence != 0:
+            q = self._handles.aim(q, t, adherence).targets
         positions, maps = self._core.deform(q, t, return_maps, out, progress)
         y: Floats = positions if out is not None else positions.astype(self._dtype, copy=False)
         return (y, maps) if maps is not None else y

@@ -15,3 +15,7 @@ class ControlPointError(NeuralMLSError):
 
 class ArgumentError(NeuralMLSError):
     """An option or argument out of its range; the command line exits with 2, for the others with 1."""
+
+
+class NotApplicable(NeuralMLSError):
+    """A method of deformation that the shape or its control points do not meet the conditions of; it says which."""

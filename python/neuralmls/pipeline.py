@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from neuralmls.arrays import as_points
-from neuralmls.deformer import Deformer, Floats, Transform
+from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ArgumentError
+from neuralmls.protocol import Transform
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, Weights
 
 WeightsName: TypeAlias = Literal["neural", "inverse-distance"]
@@ -23,6 +24,7 @@ def deform(
     weights: WeightsName | Weights = "neural",
     transform: Transform = "rigid",
     temperature: float = 1.0,
+    exact: bool = False,
     seed: int = 0,
 ) -> Floats:
     """Deform the points `x` so that the control points `p` move to `q`, in one call.
@@ -38,6 +40,8 @@ def deform(
     weights : "neural", "inverse-distance", or a weight function of the control points `p`
     transform : "rigid", "similarity" or "affine"
     temperature : float > 0
+    exact : bool
+        Whether the control points go all the way to their targets (see `ExactHandles`), not only near them.
     seed : int
         Of the network's training (neural weights only).
 
@@ -73,7 +77,7 @@ def deform(
         function = weights
         if not np.array_equal(as_points("weights.control_points", function.control_points), sources):
             raise ArgumentError("weights: expected a weight function of the control points p, found one of others")
-    return Deformer(x, function, transform=transform).deform(targets, temperature)
+    return Deformer(x, function, transform=transform).deform(targets, temperature, adherence=float(exact))
 
 
 def _bounds(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> ArrayLike | None:

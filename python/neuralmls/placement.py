@@ -61,13 +61,15 @@ def farthest_points(positions: ArrayLike, faces: ArrayLike | None, count: int, *
         cloud, on_surface = _sample_faces(x - origin, np.asarray(faces), size, rng)
         cloud = cloud + origin
     few = cloud if len(cloud) <= size else cloud[rng.permutation(len(cloud))[:size]]
-    chosen = _farthest(np.concatenate([few, on_surface + origin]), count)
+    candidates = np.concatenate([few, on_surface + origin])
+    chosen = farthest_of(candidates, count)
     if len(chosen) < count and len(few) < len(cloud):  # the subsample had too few distinct places
-        chosen = _farthest(np.unique(cloud, axis=0), count)
+        candidates = np.unique(cloud, axis=0)
+        chosen = farthest_of(candidates, count)
     if len(chosen) < count:
         most = f"{len(chosen)}, the number of distinct places of the shape"
         raise ArgumentError(f"expected a count of at most {most}, found {count}")
-    return chosen
+    return candidates[chosen]
 
 
 def _sample_faces(
@@ -90,8 +92,18 @@ def _sample_faces(
     return x[np.unique(faces[area > 0.0])], samples
 
 
-def _farthest(candidates: NDArray[np.float64], count: int) -> NDArray[np.float64]:
-    """At most `count` of the candidates: fewer if fewer are distinct."""
+def farthest_of(candidates: NDArray[np.float64], count: int) -> NDArray[np.int64]:
+    """Choose points (n, d) spread evenly, the first the one farthest from the centroid.
+
+    Returns
+    -------
+    (count,) indices; fewer if fewer of the points are distinct
+
+    Examples
+    --------
+    >>> farthest_of(np.array([[0.0], [1.0], [5.0]]), 2).tolist()
+    [2, 0]
+    """
     centred = candidates - candidates.mean(axis=0)
     scale = float(np.abs(centred).max()) or 1.0
     centred /= scale
@@ -103,4 +115,4 @@ def _farthest(candidates: NDArray[np.float64], count: int) -> NDArray[np.float64
         away = centred - centred[far]
         np.minimum(distance, np.einsum("ij,ij->i", away, away), out=distance)
         far = int(distance.argmax())
-    return candidates[chosen]
+    return np.array(chosen, dtype=np.int64)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Literal, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from neuralmls.arrays import Progress
+
+Transform: TypeAlias = Literal["rigid", "similarity", "affine"]
 
 
 class Weights(Protocol):

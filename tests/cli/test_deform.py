@@ -229,3 +229,24 @@ def test_real_shapes_from_placement_to_result(run, data, name):
     # A network stops when each control point has 0.9 of the weight at its place: nearly there.
     assert max(point["distance_to_target"] for point in points) < 0.2 * step
     assert len(nm.read(output).positions) == len(nm.read(shape).positions)
+
+
+def test_exact_control_points_arrive(run):
+    moved = (*DEFORM, "--width", "128", "--move", "top=0,0.5,0.2", "--json")
+    soft = json.loads(run(*moved, "-o", "soft.obj").out)
+    ran = run(*moved, "-o", "exact.obj", "--exact")
+    assert ran.err == ""
+    exact = json.loads(ran.out)
+    assert (soft["exact"], exact["exact"]) == (False, True)
+    assert max(point["distance_to_target"] for point in soft["control_points"]) > 0.01
+    assert max(point["distance_to_target"] for point in exact["control_points"]) < 1e-6
+
+
+def test_exact_control_points_that_cannot_arrive_are_named(run, here):
+    (here / "torn.csv").write_text(
+        "name,x,y,z,target_x,target_y,target_z\na,0,0,0,0,0,0\nb,0.01,0,0,3,0,0\nc,0,2,0,0,2,0\nd,1,2,1.5,1,2,1.5\n"
+    )
+    ran = run("deform", "shape.obj", "--points", "torn.csv", "-o", "out.obj", *QUICK, "--exact")
+    assert ran.code == 0
+    assert "control points do not arrive exactly: 'b' by" in ran.err or "'a' by" in ran.err
+    assert "--transform affine" in ran.err

@@ -48,11 +48,21 @@ impl Frame {
     pub fn around(points: &[f64], dim: usize) -> Frame {
         let mut min = [f64::INFINITY; 3];
         let mut max = [f64::NEG_INFINITY; 3];
-        for point in points.chunks_exact(dim) {
-            for (k, &c) in point.iter().enumerate() {
-                min[k] = min[k].min(c);
-                max[k] = max[k].max(c);
+        // Whole points of any dimension, at all of whose coordinates the processor looks at once.
+        let (mut least, mut most) = ([f64::INFINITY; 12], [f64::NEG_INFINITY; 12]);
+        let several = points.chunks_exact(12);
+        for (k, &c) in several.remainder().iter().enumerate() {
+            (least[k], most[k]) = (c, c);
+        }
+        for points in several {
+            for k in 0..12 {
+                least[k] = if points[k] < least[k] { points[k] } else { least[k] };
+                most[k] = if points[k] > most[k] { points[k] } else { most[k] };
             }
+        }
+        for (k, (least, most)) in least.into_iter().zip(most).enumerate() {
+            min[k % dim] = min[k % dim].min(least);
+            max[k % dim] = max[k % dim].max(most);
         }
         if points.is_empty() {
             return Frame::IDENTITY;

@@ -10,6 +10,7 @@
 //! | [`mls`] | weights and moved control points -> a rigid, similarity or affine map a point |
 //! | [`placement`] | control points spread over a shape |
 //! | [`tree`] | a kd-tree over points, built once a shape |
+//! | [`memory`] | large arrays, made by all threads |
 //! | `simd` | one kernel, compiled for several instruction sets |
 //! | [`deformer`] | joins them: points bound to their logits once, deformed many times |
 //!
@@ -20,8 +21,11 @@
 
 pub mod deformer;
 mod error;
+pub mod exact;
+
 pub mod frame;
 pub mod logits;
+pub mod memory;
 pub mod mls;
 mod parallel;
 pub mod placement;
@@ -32,6 +36,7 @@ pub mod tree;
 
 pub use deformer::{Deformed, Deformer};
 pub use error::Error;
+pub use exact::{Aim, ExactHandles};
 pub use frame::Frame;
 pub use logits::inverse_distance::InverseDistance;
 pub use logits::neural::{Fit, Layer, Network, Schedule, Training};

@@ -57,6 +57,16 @@ pub(crate) fn for_each_block_pair<A: Send, B: Send>(
     a.chunks_mut(size_a).zip(b.chunks_mut(size_b)).enumerate().for_each(|(index, (a, b))| work(index, a, b));
 }
 
+/// Whether `test` holds for one of the blocks of `size` elements.
+pub(crate) fn any_block<T: Sync>(of: &[T], size: usize, test: impl Fn(&[T]) -> bool + Sync + Send) -> bool {
+    #[cfg(feature = "threads")]
+    if of.len() > size {
+        use rayon::prelude::*;
+        return of.par_chunks(size).any(test);
+    }
+    of.chunks(size).any(test)
+}
+
 /// Calls `work(task, stop)` for each task below `count`, on all threads, each of which takes the next one when it is free. The
 /// calling thread reports meanwhile, from `span.start` to `span.end`; once the caller wants to stop, `stop()` is true and no
 /// further task begins.
@@ -168,7 +178,8 @@ impl<'a> SharedRows<'a> {
         SharedRows { start: matrix.as_mut_ptr(), rows, width, matrix: PhantomData }
     }
 
-    /// Tells the processor that row `index` is going to be written, where it can be told.
+    /// Tells the processor that row `index` is going to be written, where it can be told. (Of a row longer than a cache line, its
+    /// ends: the processor itself sees to what is between.)
     #[inline(always)]
     pub(crate) fn prefetch(&self, index: usize) {
         assert!(index < self.rows);
@@ -176,7 +187,11 @@ impl<'a> SharedRows<'a> {
         {
             use std::arch::x86_64::{_mm_prefetch, _MM_HINT_ET0};
             // SAFETY: a prefetch reads and writes nothing, and the row lies in the matrix.
-            unsafe { _mm_prefetch::<_MM_HINT_ET0>(self.start.add(index * self.width).cast()) }
+            unsafe {
+                let row = self.start.add(index * self.width);
+                _mm_prefetch::<_MM_HINT_ET0>(row.cast());
+                _mm_prefetch::<_MM_HINT_ET0>(row.add(self.width - 1).cast());
+            }
         }
     }
 

@@ -108,7 +108,8 @@ mod tests {
             x.div(y),
             x.mul_add(y, L::splat(0.5)),
             x.max(y),
-            x.mul(x).sqrt(),
+            y.inverse_sqrt(),
+            y.inverse(),
             x.abs(),
             L::select(x.less(y), x, y),
             L::splat(x.total()),
@@ -123,18 +124,44 @@ mod tests {
     }
     multiversion! { fn permuted(a: &[f32; WIDTH], places: &[u32; WIDTH]) -> [f32; WIDTH] = permuted_body }
 
+    #[inline(always)]
+    fn smaller_body<L: Lanes>(a: &[f32; WIDTH], b: &[f32; WIDTH]) -> u32 {
+        L::bits(L::load(a).less(L::load(b)))
+    }
+    multiversion! { fn smaller(a: &[f32; WIDTH], b: &[f32; WIDTH]) -> u32 = smaller_body }
+
+    #[inline(always)]
+    fn first_body<L: Lanes>(a: &[f32; WIDTH], to: &mut [f32]) {
+        L::load(a).store_first(to);
+    }
+    multiversion! { fn first(a: &[f32; WIDTH], to: &mut [f32]) = first_body }
+
+    #[test]
+    fn the_first_lanes_are_stored_and_nothing_beyond_them() {
+        let a = std::array::from_fn(|i| i as f32 + 1.0);
+        for simd in [Simd::Portable, Simd::Avx2, Simd::Avx512].into_iter().filter(|s| *s <= Simd::best()) {
+            for room in 0..20 {
+                let mut to = [0.0; 20];
+                first(simd, &a, &mut to[..room]);
+                let expected = std::array::from_fn(|i| if i < room.min(WIDTH) { a[i] } else { 0.0 });
+                assert_eq!(to, expected, "{simd:?}, room for {room}");
+            }
+        }
+    }
+
     #[test]
     fn every_instruction_set_of_this_machine_gives_the_same_answers() {
         let a = std::array::from_fn(|i| (i as f32 * 0.7).sin());
         let b = std::array::from_fn(|i| (i as f32 * 1.3).cos() + 2.0);
-        let operations: [fn(f32, f32) -> f32; 9] = [
+        let operations: [fn(f32, f32) -> f32; 10] = [
             |a, b| a + b,
             |a, b| a - b,
             |a, b| a * b,
             |a, b| a / b,
             |a, b| a * b + 0.5,
             f32::max,
-            |a, _| a.abs(),
+            |_, b| 1.0 / b.sqrt(),
+            |_, b| 1.0 / b,
             |a, _| a.abs(),
             |a, b| if a < b { a } else { b },
         ];
@@ -147,8 +174,12 @@ mod tests {
                 }
             }
             let places = std::array::from_fn(|i| ((5 * i + 3) % WIDTH) as u32);
+            let bits = smaller(simd, &a, &b.map(|b| b - 2.0));
+            for i in 0..WIDTH {
+                assert_eq!(bits >> i & 1 == 1, a[i] < b[i] - 2.0, "{simd:?}, lane {i}");
+            }
             assert_eq!(permuted(simd, &a, &places), places.map(|i| a[i as usize]), "{simd:?}");
-            assert!((results[9][0] - a.iter().sum::<f32>()).abs() < 1e-5, "{simd:?}");
+            assert!((results[10][0] - a.iter().sum::<f32>()).abs() < 1e-5, "{simd:?}");
         }
     }
 }

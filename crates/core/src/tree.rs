@@ -16,7 +16,8 @@ use std::sync::Mutex;
 
 use crate::error::{check_points, Error};
 use crate::frame::Frame;
-use crate::parallel::{for_each_block, for_each_block_pair, for_each_task};
+use crate::memory::filled;
+use crate::parallel::for_each_task;
 use crate::progress::{report, Progress};
 use crate::simd::{Aligned, WIDTH};
 
@@ -31,10 +32,8 @@ const LEVELS: usize = 6;
 pub struct PointTree {
     dim: usize,
     frame: Frame,
-    /// For each place in the tree the point's own index.
-    order: Vec<u32>,
-    /// 16 points a block; the last is filled up with the last point. Coordinates beyond the dimension are 0.
-    blocks: Vec<[Aligned; 3]>,
+    /// In the order of the tree.
+    points: Vec<Point>,
     /// One a node, in preorder.
     boxes: Vec<Region>,
 }
@@ -71,7 +70,7 @@ impl Order {
         tree: &PointTree,
         places: Range<usize>,
     ) -> impl Iterator<Item = usize> + Clone + '_ {
-        places.map(move |place| if self == Order::Tree { place } else { tree.order[place] as usize })
+        places.map(move |place| if self == Order::Tree { place } else { tree.index(place) })
     }
 }
 
@@ -88,11 +87,8 @@ impl Node {
     }
 }
 
-#[derive(Clone, Copy)]
-struct Point {
-    x: [f32; 3],
-    index: u32,
-}
+/// Coordinates, and the point's own index: the bits of the last number are it.
+type Point = [f32; 4];
 
 impl PointTree {
     /// The tree of the points `x` (n x dim), which it normalises by `frame`: that of the networks it is for.
@@ -105,46 +101,29 @@ impl PointTree {
             return Err(Error::argument("x", format!("expected at most 2^32 - 1 points, found {n}")));
         }
         report(progress, 0.0)?;
-        let mut points = vec![Point { x: [0.0; 3], index: 0 }; n];
-        for_each_block(&mut points, 1 << 12, |block, points| {
+        let mut points = filled(Vec::new(), n, [0.0; 4], 1 << 12, |block, points| {
             let first = block << 12;
             for (i, (point, x)) in points.iter_mut().zip(x[dim * first..].chunks_exact(dim)).enumerate() {
-                *point = Point { x: frame.enter_single(x), index: (first + i) as u32 };
+                let [x, y, z] = frame.enter_single(x);
+                *point = [x, y, z, f32::from_bits((first + i) as u32)];
             }
         });
         let mut boxes =
             vec![Region { centre: [0.0; 3], half: [0.0; 3] }; (2 * n.div_ceil(LEAF)).saturating_sub(1)];
         build(&mut points, &mut boxes, progress)?;
 
-        let mut order = vec![0; n];
-        let mut blocks = vec![[Aligned::ZERO; 3]; n.div_ceil(WIDTH)];
-        const PACK: usize = 256;
-        for_each_block_pair(&mut order, PACK * WIDTH, &mut blocks, PACK, |index, order, blocks| {
-            let points = &points[PACK * WIDTH * index..][..order.len()];
-            for (order, point) in order.iter_mut().zip(points) {
-                *order = point.index;
-            }
-            for (block, points) in blocks.iter_mut().zip(points.chunks(WIDTH)) {
-                for lane in 0..WIDTH {
-                    let point = points[lane.min(points.len() - 1)];
-                    for (coordinates, x) in block.iter_mut().zip(point.x) {
-                        coordinates.0[lane] = x;
-                    }
-                }
-            }
-        });
         report(progress, 1.0)?;
-        Ok(PointTree { dim, frame, order, blocks, boxes })
+        Ok(PointTree { dim, frame, points, boxes })
     }
 
     /// Points, n.
     pub fn len(&self) -> usize {
-        self.order.len()
+        self.points.len()
     }
 
     /// Whether there are no points.
     pub fn is_empty(&self) -> bool {
-        self.order.is_empty()
+        self.points.is_empty()
     }
 
     /// Coordinates a point.
@@ -158,12 +137,34 @@ impl PointTree {
     }
 
     /// The index of each point of the tree among the points as they were given: each index once.
-    pub fn order(&self) -> &[u32] {
-        &self.order
+    pub fn order(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
+        (0..self.len()).map(|place| self.index(place))
     }
 
-    pub(crate) fn blocks(&self) -> &[[Aligned; 3]] {
-        &self.blocks
+    fn index(&self, place: usize) -> usize {
+        self.points[place][3].to_bits() as usize
+    }
+
+    /// The normalised point at a place of the tree; coordinates beyond the dimension are 0.
+    pub(crate) fn point(&self, place: usize) -> [f32; 3] {
+        let [x, y, z, _] = self.points[place];
+        [x, y, z]
+    }
+
+    /// The 16 points from a place on, coordinate by coordinate; where there are fewer, the last one again and again.
+    pub(crate) fn block(&self, first: usize) -> [Aligned; 3] {
+        let points = &self.points[first..];
+        let points: &[Point; WIDTH] = match points.first_chunk() {
+            Some(points) => points,
+            None => &std::array::from_fn(|lane| points[lane.min(points.len() - 1)]),
+        };
+        let mut block = [Aligned::ZERO; 3];
+        for (lane, point) in points.iter().enumerate() {
+            for (coordinates, x) in block.iter_mut().zip(point) {
+                coordinates.0[lane] = *x;
+            }
+        }
+        block
     }
 
     /// All leaves.
@@ -230,15 +231,7 @@ fn split_all(points: &mut [Point], boxes: &mut [Region], stop: &(dyn Fn() -> boo
 
 /// Writes the box of a subtree, and puts the points of its left half first.
 fn split(points: &mut [Point], boxes: &mut [Region]) {
-    let mut least = [f32::INFINITY; 3];
-    let mut most = [f32::NEG_INFINITY; 3];
-    for point in points.iter() {
-        for k in 0..3 {
-            least[k] = if point.x[k] < least[k] { point.x[k] } else { least[k] };
-            most[k] = if point.x[k] > most[k] { point.x[k] } else { most[k] };
-        }
-    }
-    boxes[0] = Region::between(least, most);
+    boxes[0] = Region::around(points);
     if boxes.len() == 1 {
         return;
     }
@@ -254,11 +247,33 @@ fn split(points: &mut [Point], boxes: &mut [Region]) {
 }
 
 fn select<const AXIS: usize>(points: &mut [Point], middle: usize) {
-    points
-        .select_nth_unstable_by(middle, |a, b| a.x[AXIS].partial_cmp(&b.x[AXIS]).unwrap_or(Ordering::Equal));
+    points.select_nth_unstable_by(middle, |a, b| a[AXIS].partial_cmp(&b[AXIS]).unwrap_or(Ordering::Equal));
 }
 
 impl Region {
+    fn around(points: &[Point]) -> Region {
+        /// Points at all of whose coordinates the processor looks at once.
+        const SEVERAL: usize = 8;
+        let mut least = [[f32::INFINITY; 4]; SEVERAL];
+        let mut most = [[f32::NEG_INFINITY; 4]; SEVERAL];
+        for points in points.chunks(SEVERAL) {
+            let points: &[Point; SEVERAL] = match points.try_into() {
+                Ok(points) => points,
+                Err(_) => &std::array::from_fn(|i| points[i.min(points.len() - 1)]),
+            };
+            for i in 0..SEVERAL {
+                for k in 0..4 {
+                    let x = points[i][k];
+                    least[i][k] = if x < least[i][k] { x } else { least[i][k] };
+                    most[i][k] = if x > most[i][k] { x } else { most[i][k] };
+                }
+            }
+        }
+        let least = |k: usize| least.iter().fold(f32::INFINITY, |least, of| least.min(of[k]));
+        let most = |k: usize| most.iter().fold(f32::NEG_INFINITY, |most, of| most.max(of[k]));
+        Region::between([0, 1, 2].map(least), [0, 1, 2].map(most))
+    }
+
     fn between(least: [f32; 3], most: [f32; 3]) -> Region {
         let mut region = Region { centre: [0.0; 3], half: [0.0; 3] };
         for k in 0..3 {
@@ -278,9 +293,9 @@ mod tests {
     fn check(x: &[f64], dim: usize) {
         let tree = PointTree::new(x, dim, Frame::IDENTITY, &mut |_| true).unwrap();
         let n = x.len() / dim;
-        let mut seen = tree.order.clone();
+        let mut seen: Vec<usize> = tree.order().collect();
         seen.sort_unstable();
-        assert_eq!(seen, (0..n as u32).collect::<Vec<_>>());
+        assert_eq!(seen, (0..n).collect::<Vec<_>>());
         if n == 0 {
             return;
         }
@@ -289,8 +304,9 @@ mod tests {
             let region = tree.region(node);
             for place in node.first * LEAF..((node.first + node.count) * LEAF).min(n) {
                 for k in 0..dim {
-                    let coordinate = tree.blocks[place / WIDTH][k].0[place % WIDTH];
-                    assert_eq!(coordinate, x[dim * tree.order[place] as usize + k] as f32);
+                    let coordinate = tree.point(place)[k];
+                    assert_eq!(coordinate, tree.block(place - place % WIDTH)[k].0[place % WIDTH]);
+                    assert_eq!(coordinate, x[dim * tree.index(place) + k] as f32);
                     let distance = f64::from(coordinate) - f64::from(region.centre[k]);
                     assert!(distance.abs() <= f64::from(region.half[k]), "{distance} {region:?}");
                 }
@@ -319,7 +335,10 @@ mod tests {
     #[test]
     fn is_the_same_for_any_number_of_threads() {
         let x: Vec<f64> = (0..60_000).map(|i| (f64::from(i) * 0.7).sin()).collect();
-        let build = || PointTree::new(&x, 3, Frame::IDENTITY, &mut |_| true).unwrap().order;
+        let build = || {
+            let tree = PointTree::new(&x, 3, Frame::IDENTITY, &mut |_| true).unwrap();
+            tree.order().collect::<Vec<_>>()
+        };
         #[cfg(feature = "threads")]
         for threads in [1, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

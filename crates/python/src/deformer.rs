@@ -1,5 +1,6 @@
 //! Points bound to their logits.
 
+use neuralmls_core::memory::copy_of;
 use neuralmls_core::Transform;
 use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -17,6 +18,19 @@ pub(crate) struct Deformer {
 /// Positions n x d, and the maps n x d x d where they were asked for.
 type Deformed<'py> = (Bound<'py, PyArray2<f64>>, Option<Bound<'py, PyArray3<f64>>>);
 
+/// A transform by its name.
+pub(crate) fn transform(name: &str) -> PyResult<Transform> {
+    match name {
+        "rigid" => Ok(Transform::Rigid),
+        "similarity" => Ok(Transform::Similarity),
+        "affine" => Ok(Transform::Affine),
+        other => {
+            let expected = "expected 'rigid', 'similarity' or 'affine'";
+            Err(argument(format!("transform: {expected}, found '{other}'")))
+        }
+    }
+}
+
 #[pymethods]
 impl Deformer {
     #[new]
@@ -27,16 +41,9 @@ impl Deformer {
         transform: &str,
     ) -> PyResult<Deformer> {
         let dim = x.shape()[1];
-        let transform = match transform {
-            "rigid" => Transform::Rigid,
-            "similarity" => Transform::Similarity,
-            "affine" => Transform::Affine,
-            other => {
-                let expected = "expected 'rigid', 'similarity' or 'affine'";
-                return Err(argument(format!("transform: {expected}, found '{other}'")));
-            }
-        };
-        let (x, p, logits) = (x.as_slice()?.to_vec(), p.as_slice()?, logits.as_slice()?.to_vec());
+        let transform = self::transform(transform)?;
+        let (x, p, logits) = (x.as_slice()?, p.as_slice()?, logits.as_slice()?);
+        let (x, logits) = (copy_of(x), copy_of(logits));
         let inner = neuralmls_core::Deformer::new(x, dim, p, logits, transform)
             .map_err(|error| from_core(error, None))?;
         Ok(Deformer { inner, dim })

@@ -4,6 +4,7 @@
 
 mod deformer;
 mod errors;
+mod exact;
 mod progress;
 mod shape_file;
 mod weights;
@@ -14,6 +15,8 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use crate::deformer::Deformer;
+    #[pymodule_export]
+    use crate::exact::ExactHandles;
     #[pymodule_export]
     use crate::shape_file::ShapeFile;
     #[pymodule_export]

@@ -129,7 +129,8 @@ export class App {
   /** Spreads control points over the shape; those that are neither moved nor locked give way to them. */
   async place(count: number): Promise<void> {
     await this.#guarded(async () => {
-      const flat = await this.#core.farthestPoints(count);
+      const most = this.store.value.shape?.opened.count ?? 0;
+      const flat = await this.#core.farthestPoints(Math.min(count, most));
       const places = Array.from({ length: flat.length / 3 }, (_, i) => {
         const position = pointAt(flat, i);
         return { position, target: position };

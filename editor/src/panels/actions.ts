@@ -35,7 +35,9 @@ function nudgeBy(app: App, event: KeyboardEvent): void {
   const { session, shape, view } = app.store.value;
   if (!shape || session.selection.length === 0) return;
   const size = 2 * shape.opened.frame.half * NUDGE * (event.shiftKey ? 10 : 1);
-  app.do(nudge(view.moves, scale(ARROWS[event.key], size)));
+  const arrow = ARROWS[event.key];
+  // Not out of the plane of a shape that is in one.
+  if (arrow.findIndex((c) => c !== 0) < shape.opened.dim) app.do(nudge(view.moves, scale(arrow, size)));
 }
 
 export const SHORTCUTS: readonly Shortcut[] = [

@@ -244,10 +244,10 @@ mat3 affine(vec3 pk, vec3 qk, out Moments moments) {
   return anchorLinear + transpose(correction);
 }
 
-// Blue over white to red for a weight from 0 to 1.
+// Blue over white to red for a weight from 0 to 1; linear, as all colours of vertices are.
 vec3 heat(float w) {
   vec3 low = vec3(0.09, 0.17, 0.42), middle = vec3(0.86, 0.87, 0.84), high = vec3(0.86, 0.22, 0.06);
-  return w < 0.5 ? mix(low, middle, 2.0 * w) : mix(middle, high, 2.0 * w - 1.0);
+  return pow(w < 0.5 ? mix(low, middle, 2.0 * w) : mix(middle, high, 2.0 * w - 1.0), vec3(2.2));
 }
 
 vec3 tintOf() {

@@ -11,6 +11,7 @@ import {
   LineSegments,
   Points,
   ShaderMaterial,
+  SRGBColorSpace,
 } from "three";
 import { hueOf } from "../model/view.ts";
 
@@ -55,7 +56,7 @@ void main() {
   float disc = 1.0 - smoothstep(0.94 - edge, 0.94, r);
   if (disc <= 0.0) discard;
   float core = 1.0 - smoothstep(0.60 - edge, 0.60 + edge, r);
-  vec3 ring = state > 0.5 && state < 1.5 ? vec3(1.0, 0.55, 0.0) : state > 1.5 ? vec3(0.3, 0.75, 1.0) : vec3(1.0);
+  vec3 ring = state > 0.5 && state < 1.5 ? vec3(1.0, 0.26, 0.0) : state > 1.5 ? vec3(0.08, 0.5, 1.0) : vec3(1.0);
   float shadow = smoothstep(0.80, 0.94, r);
   gl_FragColor = vec4(mix(mix(ring, vec3(0.04, 0.05, 0.07), 0.75 * shadow), vTone, core), disc * opacity);
   #include <colorspace_fragment>
@@ -135,5 +136,5 @@ const scratch = new Color();
 
 /** The colour of the i-th control point, linear. */
 export function colourOf(i: number): [number, number, number] {
-  return scratch.setHSL(...hueOf(i)).toArray() as [number, number, number];
+  return scratch.setHSL(...hueOf(i), SRGBColorSpace).toArray() as [number, number, number];
 }

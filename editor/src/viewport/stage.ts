@@ -123,10 +123,10 @@ export class Stage {
     this.request();
   }
 
-  /** Shows all of some places from the front and a little above. */
-  home(places: readonly Vector3[]): void {
+  /** Shows all of some places: from the front and a little above and beside, or straight from the front. */
+  home(places: readonly Vector3[], straight = false): void {
     const { camera, orbit } = this;
-    camera.position.set(2.6, 1.5, 4.2);
+    camera.position.set(straight ? 0 : 2.6, straight ? 0 : 1.5, 4.2);
     orbit.target.copy(new Box3().setFromPoints([...places]).getCenter(new Vector3()));
     camera.position.add(orbit.target);
     camera.lookAt(orbit.target);

@@ -244,7 +244,8 @@ export class Viewport {
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(
       (i) => new Vector3(i & 1 ? min.x : max.x, i & 2 ? min.y : max.y, i & 4 ? min.z : max.z),
     );
-    this.stage.home([...corners, ...this.#history.session.points.map((point) => this.#toView(point.target))]);
+    const targets = this.#history.session.points.map((point) => this.#toView(point.target));
+    this.stage.home([...corners, ...targets], this.#dim < 3);
   }
 
   #drag(to: (place: Vec3) => Vec3): void {

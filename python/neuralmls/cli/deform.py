@@ -3,24 +3,15 @@
 from __future__ import annotations
 
 import sys
-import warnings as python_warnings
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
-import typer
+import click
 
-from neuralmls.cli import console, outputs
+from neuralmls.cli import console, options, outputs
 from neuralmls.cli.stages import Stages
-from neuralmls.cli.weights import (
-    AlphaOption,
-    EpsilonOption,
-    SeedOption,
-    StepsOption,
-    TemperatureOption,
-    WeightsChoice,
-    WeightsOption,
-    WidthOption,
-)
+from neuralmls.cli.weights import WeightsChoice, weights_options
 from neuralmls.errors import ArgumentError
 
 if TYPE_CHECKING:
@@ -30,28 +21,43 @@ if TYPE_CHECKING:
 TransformName: TypeAlias = Literal["rigid", "similarity", "affine"]
 
 
+@click.command()
+@options.shape
+@options.points("The control points and their targets, JSON or CSV.")
+@options.output("The file to write, of the shape's format; - for standard output.")
+@weights_options
+@click.option(
+    "--transform",
+    type=click.Choice(get_args(TransformName)),
+    default="rigid",
+    help="What may happen to the shape locally.",
+)
+@click.option(
+    "--move",
+    "moves",
+    metavar="NAME=DX,DY,DZ",
+    multiple=True,
+    help="Move a target, from where the file has it; may be repeated.",
+)
+@click.option("--exact", is_flag=True, help="Take the control points all the way to their targets, not only near them.")
+@options.json
+@options.quiet
+@click.option("--verbose", is_flag=True, help="Every control point in the summary.")
+@options.force
 def deform(
-    shape: Annotated[Path, typer.Argument(metavar="SHAPE", help="OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV or NPY.")],
-    points: Annotated[Path, typer.Option(help="The control points and their targets, JSON or CSV.")],
-    output: Annotated[
-        Path, typer.Option("--output", "-o", help="The file to write, of the shape's format; - for standard output.")
-    ],
-    weights: WeightsOption = "neural",
-    transform: Annotated[TransformName, typer.Option(help="What may happen to the shape locally.")] = "rigid",
-    temperature: TemperatureOption = 1.0,
-    alpha: AlphaOption = None,
-    epsilon: EpsilonOption = None,
-    width: WidthOption = None,
-    steps: StepsOption = None,
-    seed: SeedOption = None,
-    move: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME=DX,DY,DZ", help="Move a target, from where the file has it; may be repeated."),
-    ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Summary as JSON, for machines.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No summary and no progress bar.")] = False,
-    verbose: Annotated[bool, typer.Option("--verbose", help="Every control point in the summary.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Overwrite files that are there.")] = False,
+    *,
+    shape: Path,
+    points: Path,
+    output: Path,
+    choice: WeightsChoice,
+    temperature: float,
+    transform: TransformName,
+    moves: Sequence[str],
+    exact: bool,
+    json: bool,
+    quiet: bool,
+    verbose: bool,
+    force: bool,
 ) -> None:
     """Bend a shape by its control points.
 
@@ -60,8 +66,7 @@ def deform(
 
     Example: neuralmls deform chair.obj --points chair.json -o bent.obj
     """
-    choice = WeightsChoice(weights, alpha, epsilon, width, steps, seed)
-    offsets = _offsets(move or [])
+    offsets = _offsets(moves)
     to_stdout = output == outputs.STANDARD_OUTPUT
     if not to_stdout:
         outputs.check_output(output, force=force, inputs=[shape, points])
@@ -88,8 +93,11 @@ def deform(
         warnings.append("no control point is moved, so that the output is the input")
     for sentence in warnings:
         console.warning(sentence)
-    result = deformation.deformed(source, control_points, choice, transform, temperature, stages)
-    for sentence in deformation.not_parted(control_points, choice, result):
+    result = deformation.deformed(source, control_points, choice, transform, temperature, stages, exact=exact)
+    sentences = deformation.not_parted(control_points, choice, result)
+    if exact:
+        sentences += deformation.not_arrived(control_points, source, result)
+    for sentence in sentences:
         console.warning(sentence)
         warnings.append(sentence)
     with stages.stage("write"):
@@ -98,7 +106,7 @@ def deform(
         console.warning(sentence)
         warnings.append(sentence)
     told = summary.summary(source, control_points, choice, transform, temperature, result)
-    told |= {"output": str(output), "files": files, "warnings": warnings, "seconds": stages.seconds}
+    told |= {"exact": exact, "output": str(output), "files": files, "warnings": warnings, "seconds": stages.seconds}
     out = sys.stderr if to_stdout else sys.stdout
     if json:
         console.document(told, out)
@@ -106,7 +114,7 @@ def deform(
         summary.show(told, everything=verbose, file=out)
 
 
-def _offsets(moves: list[str]) -> dict[str, list[float]]:
+def _offsets(moves: Sequence[str]) -> dict[str, list[float]]:
     """What `--move NAME=dx,dy,dz` says; a name may have = in it."""
     offsets: dict[str, list[float]] = {}
     for text in moves:
@@ -144,7 +152,4 @@ def _write(shape: Shape, result: Deformation, output: Path, *, force: bool) -> t
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()
         return [], []
-    with python_warnings.catch_warnings(record=True) as caught:
-        python_warnings.simplefilter("always")
-        written = shape.write(output, result.positions, maps=result.maps, overwrite=force)
-    return [str(path) for path in written], [str(warning.message) for warning in caught]
+    return outputs.write_shape(shape, output, result.positions, maps=result.maps, force=force)

@@ -11,14 +11,18 @@ from numpy.typing import NDArray
 from neuralmls.cli.stages import Stages
 from neuralmls.cli.weights import WeightsChoice
 from neuralmls.control_points import ControlPoints
-from neuralmls.deformer import Deformer, Floats, Transform
+from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ControlPointError, FileError
+from neuralmls.exact import ExactHandles
+from neuralmls.protocol import Transform
 from neuralmls.shape import Shape
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, softmax
 
 LARGEST = 1e150  # units
 # A control point with less of the weight at its own place shares it; the training aims at 0.9.
 OWNED = 0.85
+# An exact control point that is farther from its target than this part of the longest side has not arrived.
+ARRIVED = 1e-6
 
 
 @dataclass(frozen=True)
@@ -80,20 +84,23 @@ def deformed(
     transform: Transform,
     temperature: float,
     stages: Stages,
+    *,
+    exact: bool = False,
 ) -> Deformation:
-    """Fit the weights, bind the shape to them, and move the control points to their targets."""
+    """Fit the weights, bind the shape to them, and move the control points near their targets, or onto them."""
     with stages.stage(choice.stage) as report:
         weights = choice.make(points.sources, shape.bounds, report)
     with stages.stage("bind") as report:
         deformer = Deformer(shape.positions, weights, transform=transform, progress=report)
     with stages.stage("move") as report:
+        aim = ExactHandles(weights, transform=transform).aim(points.targets, temperature, float(exact))
         maps: NDArray[np.float64] | None = None
         if shape.has_normals:
-            y, maps = deformer.deform(points.targets, temperature, return_maps=True, progress=report)
+            y, maps = deformer.deform(aim.targets, temperature, return_maps=True, progress=report)
         else:
-            y = deformer.deform(points.targets, temperature, progress=report)
+            y = deformer.deform(aim.targets, temperature, progress=report)
         handles = Deformer(points.sources, weights, transform=transform)
-        missed = np.linalg.norm(handles.deform(points.targets, temperature) - points.targets, axis=1)
+        missed = np.linalg.norm(handles.deform(aim.targets, temperature) - points.targets, axis=1)
     return Deformation(y, maps, weights, missed)
 
 
@@ -109,4 +116,17 @@ def not_parted(points: ControlPoints, choice: WeightsChoice, result: Deformation
     return [
         f"after {result.weights.steps:,} steps of training, control points still share their places with others, "
         f"and stop short of their targets: {listed}; they are probably too close together"
+    ]
+
+
+def not_arrived(points: ControlPoints, shape: Shape, result: Deformation) -> list[str]:
+    """Warn of control points that were to arrive exactly and do not."""
+    short = [i for i in result.missed.argsort()[::-1] if result.missed[i] > ARRIVED * longest_side(shape)]
+    if not short:
+        return []
+    listed = ", ".join(f"'{points.names[i]}' by {result.missed[i]:.3g}" for i in short[:5])
+    listed += f" and {len(short) - 5} more" if len(short) > 5 else ""
+    return [
+        f"control points do not arrive exactly: {listed}; their targets contradict each other under this transform: "
+        "move them less, or try a lower temperature or --transform affine"
     ]

@@ -5,11 +5,10 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 from shlex import quote
-from typing import Annotated
 
-import typer
+import click
 
-from neuralmls.cli import console, outputs
+from neuralmls.cli import console, options, outputs
 from neuralmls.cli.sample import sample_files, write_sample
 from neuralmls.cli.stages import Stages
 from neuralmls.cli.weights import Kind, WeightsChoice
@@ -18,18 +17,15 @@ from neuralmls.errors import FileError, NeuralMLSError
 RESULTS: dict[str, Kind] = {"neural": "neural", "classic": "inverse-distance"}
 
 
-def demo(
-    output: Annotated[Path, typer.Option("--output", "-o", help="The folder to write into.")] = Path("out"),
-    force: Annotated[bool, typer.Option("--force", help="Overwrite files that are there.")] = False,
-) -> None:
+@click.command()
+@click.option("--output", "-o", type=options.PATH, default=Path("out"), help="The folder to write into.")
+@options.force
+def demo(*, output: Path, force: bool) -> None:
     """Bend a sample chair with neural and classic weights.
 
     Its legs get longer, its back leans. Writes the shapes and a picture of them.
     """
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(f"{output}: cannot make this folder: {error.strerror or error}") from error
+    outputs.make_folder(output)
     chair, picture = output / "chair.obj", output / "chair.png"
     deformed = {name: output / f"chair-{name}.obj" for name in RESULTS}
     for file in (*sample_files(chair), *deformed.values(), picture):

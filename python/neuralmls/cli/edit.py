@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
-import typer
+import click
 
-from neuralmls.cli import console
+from neuralmls.cli import console, options
 from neuralmls.errors import ArgumentError
 
 
-def edit(
-    shape: Annotated[
-        Path | None, typer.Argument(metavar="SHAPE", help="OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV or NPY.")
-    ] = None,
-    points: Annotated[Path | None, typer.Option(help="Control points or a session to start from, JSON or CSV.")] = None,
-    port: Annotated[
-        int | None, typer.Option(min=1, max=65535, help="Where to listen. [default: 8417, or any that is free]")
-    ] = None,
-    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the browser.")] = True,
-) -> None:
+@click.command()
+@click.argument("shape", type=options.PATH, required=False)
+@click.option("--points", type=options.PATH, help="Control points or a session to start from, JSON or CSV.")
+@click.option("--port", type=click.IntRange(1, 65535), help="Where to listen; without it at 8417, or any that is free.")
+@click.option("--browser/--no-browser", default=True, help="Open the browser.")
+def edit(*, shape: Path | None, points: Path | None, port: int | None, browser: bool) -> None:
     """Edit a shape in the browser. Nothing leaves this machine.
 
     Serves the editor, the shape and its materials on 127.0.0.1, until Ctrl-C.

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-import typer
+import click
 
-from neuralmls.cli import console
+from neuralmls.cli import console, options
 
 
-def inspect(
-    shape: Annotated[Path, typer.Argument(metavar="SHAPE", help="OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV or NPY.")],
-    json: Annotated[bool, typer.Option("--json", help="As JSON, for machines.")] = False,
-) -> None:
+@click.command()
+@options.shape
+@options.json
+def inspect(*, shape: Path, json: bool) -> None:
     """Show what is in a file, and what a deformation will carry over."""
     from neuralmls.cli.deformation import longest_side
     from neuralmls.shape import read

@@ -6,49 +6,59 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from importlib import import_module
 
-import typer
-from typer.main import get_command
+import click
 
 from neuralmls.cli import console
-from neuralmls.cli.deform import deform
-from neuralmls.cli.demo import demo
-from neuralmls.cli.edit import edit
-from neuralmls.cli.inspect import inspect
-from neuralmls.cli.points import points
-from neuralmls.cli.render import render
-from neuralmls.cli.sample import sample
 from neuralmls.errors import ArgumentError, NeuralMLSError
 
 BAD_DATA, WRONG_USE, INTERRUPTED = 1, 2, 130
 
-# All of typer's usage errors are of this class; where it is to be imported from differs between typer's versions.
-UsageError: type[Exception] = typer.BadParameter.__mro__[1]
-
-# Plain help: it starts at once, and is as wide as the terminal wants it.
-app = typer.Typer(
-    name="neuralmls",
-    add_completion=False,
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+COMMANDS = (
+    "deform",
+    "edit",
+    "inspect",
+    "points",
+    "render",
+    "compare",
+    "sample",
+    "demo",
+    "convert-kpd",
+    "benchmark",
+    "study",
 )
-for command in (deform, edit, inspect, points, render, sample, demo):
-    app.command()(command)
 
 
-def _version(asked: bool) -> None:
+class Commands(click.Group):
+    """The commands: each in the module of its name, which is imported when it is asked for."""
+
+    def list_commands(self, _: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, _: click.Context, name: str) -> click.Command | None:
+        if name not in COMMANDS:
+            return None
+        module = name.replace("-", "_")
+        command: click.Command = getattr(import_module(f"neuralmls.cli.{module}"), module)
+        return command
+
+
+def _version(context: click.Context, _: click.Parameter, asked: bool) -> None:
     if asked:
         from neuralmls import __version__
 
         print(f"neuralmls {__version__}")
-        raise typer.Exit
+        context.exit()
 
 
-@app.callback(epilog="Start with: neuralmls demo")
-def neuralmls(
-    version: bool = typer.Option(False, "--version", callback=_version, is_eager=True, help="Show the version."),
-) -> None:
+@click.group(
+    cls=Commands,
+    epilog="Start with: neuralmls demo",
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100, "show_default": True},
+)
+@click.option("--version", is_flag=True, callback=_version, is_eager=True, expose_value=False, help="Show the version.")
+def neuralmls() -> None:
     """Bend any 3D shape by a few control points; everything else in its file stays as it was."""
 
 
@@ -58,13 +68,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         with suppress(AttributeError, ValueError):  # a terminal that cannot show a name still shows the rest
             stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    command = get_command(app)
     try:
-        with command.make_context("neuralmls", given) as context:
-            command.invoke(context)
+        with neuralmls.make_context("neuralmls", given) as context:
+            neuralmls.invoke(context)
         sys.stdout.flush()
         return 0
-    except typer.Exit as done:
+    except click.exceptions.Exit as done:
         return done.exit_code
     except ArgumentError as error:
         console.error(str(error))
@@ -72,7 +81,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except NeuralMLSError as error:
         console.error(str(error))
         return BAD_DATA
-    except UsageError as error:
+    except click.UsageError as error:
         console.error(_usage(error))
         return WRONG_USE
     except KeyboardInterrupt:
@@ -89,10 +98,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return BAD_DATA
 
 
-def _usage(error: Exception) -> str:
-    """A usage error of typer's as one sentence, with where to read on."""
-    sentence = error.format_message()  # type: ignore[attr-defined]
-    sentence = " ".join(sentence.replace("Value error, ", "").rstrip(".").split())
-    context = getattr(error, "ctx", None)
-    path = context.command_path if context is not None else "neuralmls"
+def _usage(error: click.UsageError) -> str:
+    """A usage error as one sentence, with where to read on."""
+    sentence = " ".join(error.format_message().rstrip(".").split())
+    path = error.ctx.command_path if error.ctx is not None else "neuralmls"
     return f"{sentence[:1].lower()}{sentence[1:]}; see {path} --help"

@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from neuralmls.errors import ArgumentError, FileError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from neuralmls.shape import Shape
 
 STANDARD_OUTPUT = Path("-")
 
@@ -46,6 +53,30 @@ def check_ending(path: Path, endings: Iterable[str], what: str) -> None:
     allowed = [f".{ending}" for ending in endings]
     if path.suffix.lower() not in allowed:
         raise ArgumentError(f"{path}: expected a name that ends in {' or '.join(allowed)}, for {what}")
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder where there is none yet.
+
+    Raises
+    ------
+    FileError
+        It cannot be made.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"{path}: cannot make this folder: {error.strerror or error}") from error
+
+
+def write_shape(
+    shape: Shape, path: Path, positions: ArrayLike, *, maps: ArrayLike | None = None, force: bool
+) -> tuple[list[str], list[str]]:
+    """Write a shape with other positions; return the files written, and warnings of files beside it that were kept."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        written = shape.write(path, positions, maps=maps, overwrite=force)
+    return [str(file) for file in written], [str(warning.message) for warning in caught]
 
 
 def same_file(one: Path, other: Path) -> bool:

@@ -5,21 +5,20 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 from shlex import quote
-from typing import Annotated
 
-import typer
+import click
 
-from neuralmls.cli import console, outputs
+from neuralmls.cli import console, options, outputs
 
 
-def points(
-    shape: Annotated[Path, typer.Argument(metavar="SHAPE", help="The shape to put them on.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="The control-point file to write, .json or .csv.")],
-    count: Annotated[int, typer.Option(help="How many.")] = 12,
-    seed: Annotated[int, typer.Option(help="Of the samples of the surface.")] = 0,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Overwrite files that are there.")] = False,
-) -> None:
+@click.command()
+@options.shape
+@options.output("The control-point file to write, .json or .csv.")
+@click.option("--count", type=int, default=12, help="How many.")
+@click.option("--seed", type=int, default=0, help="Of the samples of the surface.")
+@options.quiet
+@options.force
+def points(*, shape: Path, output: Path, count: int, seed: int, quiet: bool, force: bool) -> None:
     """Spread control points over a shape, to start from.
 
     Each is as far from the others as can be. Rename them and set their targets in the file,

@@ -4,23 +4,15 @@ from __future__ import annotations
 
 import difflib
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
+import click
 
-from neuralmls.cli import console, outputs
+from neuralmls.cli import console, options, outputs
 from neuralmls.cli.stages import Stages
-from neuralmls.cli.weights import (
-    AlphaOption,
-    EpsilonOption,
-    SeedOption,
-    StepsOption,
-    TemperatureOption,
-    WeightsChoice,
-    WeightsOption,
-    WidthOption,
-)
+from neuralmls.cli.weights import WeightsChoice, weights_options
 from neuralmls.errors import ArgumentError
 
 if TYPE_CHECKING:
@@ -31,31 +23,32 @@ if TYPE_CHECKING:
     from neuralmls.shape import Shape
 
 
+@click.command()
+@click.argument("shapes", metavar="SHAPE...", type=options.PATH, nargs=-1, required=True)
+@options.output("The picture to write, .png.")
+@click.option(
+    "--points", type=options.PATH, help="Control points: balls, on the first shape with arrows to the targets."
+)
+@click.option("--heat", metavar="NAME", help="Colour the first shape by this control point's weight.")
+@weights_options
+@options.quiet
+@options.force
 def render(
-    shapes: Annotated[list[Path], typer.Argument(metavar="SHAPE", help="Shapes, drawn side by side.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="The picture to write, .png.")],
-    points: Annotated[
-        Path | None, typer.Option(help="Control points: balls, on the first shape with arrows to the targets.")
-    ] = None,
-    heat: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Colour the first shape by this control point's weight.")
-    ] = None,
-    weights: WeightsOption = "neural",
-    temperature: TemperatureOption = 1.0,
-    alpha: AlphaOption = None,
-    epsilon: EpsilonOption = None,
-    width: WidthOption = None,
-    steps: StepsOption = None,
-    seed: SeedOption = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing, show no progress bar.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Overwrite files that are there.")] = False,
+    *,
+    shapes: Sequence[Path],
+    output: Path,
+    points: Path | None,
+    heat: str | None,
+    choice: WeightsChoice,
+    temperature: float,
+    quiet: bool,
+    force: bool,
 ) -> None:
     """Draw shapes side by side into a picture.
 
     All are seen by the same camera. The options of the weights are those of deform, and matter
     for --heat only. Needs PyVista: pip install 'neuralmls[figures]'
     """
-    choice = WeightsChoice(weights, alpha, epsilon, width, steps, seed)
     if heat is not None and points is None:
         raise ArgumentError("--heat names a control point: give the control points with --points")
     outputs.check_ending(output, ("png",), "a picture")
@@ -105,7 +98,7 @@ def _weights_of(
         return softmax(function.logits(shape.positions, progress=report), temperature)[:, points.names.index(name)]
 
 
-def _titles(shapes: list[Path]) -> list[str]:
+def _titles(shapes: Sequence[Path]) -> list[str]:
     """The files' names, with their folder where two have the same name."""
     names = [path.name for path in shapes]
     return [path.name if names.count(path.name) == 1 else str(path) for path in shapes]

@@ -5,19 +5,18 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 from shlex import quote
-from typing import Annotated
 
-import typer
+import click
 
-from neuralmls.cli import console, outputs
+from neuralmls.cli import console, options, outputs
 
 
-def sample(
-    name: Annotated[str, typer.Argument(metavar="chair|airplane|car|table", help="Which shape.")],
-    output: Annotated[Path, typer.Option("--output", "-o", help="The OBJ file to write.")],
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Say nothing.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Overwrite files that are there.")] = False,
-) -> None:
+@click.command()
+@click.argument("name", metavar="chair|airplane|car|table")
+@options.output("The OBJ file to write.")
+@options.quiet
+@options.force
+def sample(*, name: str, output: Path, quiet: bool, force: bool) -> None:
     """Write a sample shape and its control points."""
     outputs.check_ending(output, ("obj",), "a sample")
     files = sample_files(output)

@@ -11,7 +11,7 @@ from neuralmls.cli import console
 from neuralmls.cli.deformation import Deformation, longest_side
 from neuralmls.cli.weights import WeightsChoice
 from neuralmls.control_points import ControlPoints
-from neuralmls.deformer import Transform
+from neuralmls.protocol import Transform
 from neuralmls.shape import Shape
 from neuralmls.weights import NeuralWeights
 

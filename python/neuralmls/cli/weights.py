@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
+from functools import wraps
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar, cast, get_args
 
-import typer
+import click
 
+from neuralmls.cli import options
 from neuralmls.errors import ArgumentError
 
 if TYPE_CHECKING:
@@ -18,27 +20,40 @@ if TYPE_CHECKING:
 
 Kind: TypeAlias = Literal["neural", "inverse-distance"]
 
-WeightsOption = Annotated[Kind, typer.Option("--weights", help="Learned from the control points, or the classic ones.")]
-TemperatureOption = Annotated[
-    float, typer.Option(help="Of the softmax: below 1 parts move more apart, above 1 more together.")
-]
-AlphaOption = Annotated[
-    float | None,
-    typer.Option(help="Inverse-distance: exponent of the squared distance; 1 if not given."),
-]
-EpsilonOption = Annotated[
-    float | None,
-    typer.Option(
-        help="Inverse-distance: above 0 caps the weight near a control point; "
-        "distances count in halves of the shape's longest side."
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_OPTIONS = (
+    click.option(
+        "--weights",
+        type=click.Choice(get_args(Kind)),
+        default="neural",
+        help="Learned from the control points, or the classic ones.",
     ),
-]
-WidthOption = Annotated[int | None, typer.Option(help="Neural: neurons of a hidden layer; 1024 if not given.")]
-StepsOption = Annotated[
-    int | None,
-    typer.Option(help="Neural: steps of the training; until the loss is small if not given."),
-]
-SeedOption = Annotated[int | None, typer.Option(help="Neural: seed of the training; 0 if not given.")]
+    options.temperature,
+    click.option("--alpha", type=float, help="Inverse-distance: exponent of the squared distance; 1 if not given."),
+    click.option(
+        "--epsilon",
+        type=float,
+        help="Inverse-distance: above 0 caps the weight near a control point; "
+        "distances count in halves of the shape's longest side.",
+    ),
+    click.option("--width", type=int, help="Neural: neurons of a hidden layer; 1024 if not given."),
+    click.option("--steps", type=int, help="Neural: steps of the training; until the loss is small if not given."),
+    click.option("--seed", type=int, help="Neural: seed of the training; 0 if not given."),
+)
+
+
+def weights_options(function: Function) -> Function:
+    """Add the options of a `WeightsChoice`, which the function gets as `choice`, and the temperature."""
+
+    @wraps(function)
+    def chosen(**arguments: Any) -> Any:
+        names = ("weights", "alpha", "epsilon", "width", "steps", "seed")
+        return function(choice=WeightsChoice(*(arguments.pop(name) for name in names)), **arguments)
+
+    for option in reversed(_OPTIONS):
+        chosen = option(chosen)
+    return cast(Function, chosen)
 
 
 @dataclass(frozen=True)
@@ -84,8 +99,8 @@ class WeightsChoice:
         from neuralmls.weights import InverseDistanceWeights
         from neuralmls.weights.neural import check_training
 
-        options = self._options("seed", "width", "steps")
-        check_training(**{"seed": 0, "width": 1, "steps": None, **options})
+        given = self._options("seed", "width", "steps")
+        check_training(**{"seed": 0, "width": 1, "steps": None, **given})
         InverseDistanceWeights([[0.0]], **self._options("alpha", "epsilon"))
 
     def make(

@@ -1,4 +1,4 @@
-"""The page of a figure: panels side by side, titles above, a legend below."""
+"""The page of a figure: panels side by side, in rows, titles above, a legend below."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ def png(
     titles: Sequence[str],
     width: int,
     *,
+    columns: int,
     legend: Sequence[tuple[Colour, str]] = (),
     weights: bool = False,
 ) -> bytes:
@@ -27,25 +28,28 @@ def png(
     ----------
     pictures : panels of the same size, (height, width, 3), larger than they are to be shown
     titles : one for each panel; what does not fit is cut off in front, where paths are least telling
+    columns : panels in a row
     legend : colours of balls, and what they mean, from right to left
     weights : whether the legend explains the heat map
     """
     from PIL import Image, ImageDraw
 
-    panel_width = width // len(pictures)
+    panel_width = width // columns
     panel_height = round(panel_width * pictures[0].shape[0] / pictures[0].shape[1])
     text = max(round(min(width / 64, panel_width / 14)), 9)
     band = round(2.2 * text)
-    page = Image.new("RGB", (width, panel_height + 2 * band), "white")
+    rows = -(-len(pictures) // columns)
+    page = Image.new("RGB", (width, rows * (panel_height + band) + band), "white")
     pen = ImageDraw.Draw(page)
     font = _font(text)
     for i, (picture, title) in enumerate(zip(pictures, titles, strict=True)):
         small = Image.fromarray(picture).resize((panel_width, panel_height), Image.Resampling.LANCZOS)
-        page.paste(small, (i * panel_width, band))
+        left, top = i % columns * panel_width, i // columns * (panel_height + band)
+        page.paste(small, (left, top + band))
         while pen.textlength(title, font=font) > 0.95 * panel_width and len(title) > 2:
             title = "…" + title.lstrip("…")[1:]
-        pen.text(((i + 0.5) * panel_width, band / 2 + 2), title, fill=_rgb(INK), font=font, anchor="mm")
-    x, y = float(width - text), panel_height + 1.5 * band
+        pen.text((left + panel_width / 2, top + band / 2 + 2), title, fill=_rgb(INK), font=font, anchor="mm")
+    x, y = float(width - text), page.height - 0.5 * band
     font = _font(round(0.75 * text))
     for colour, label in legend:
         pen.text((x, y), label, fill=_rgb(INK), font=font, anchor="rm")

@@ -51,6 +51,7 @@ def render(
     *,
     control_points: ControlPoints | None = None,
     width: int = 1600,
+    columns: int | None = None,
     azimuth: float = 32.0,
     elevation: float = 18.0,
     up: str = "y",
@@ -66,6 +67,8 @@ def render(
         in the others. What lies inside of the shape shines through.
     width : int, pixels
         The height follows from what is to be seen.
+    columns : int, optional
+        Panels in a row; all of them if not given.
     azimuth, elevation : float, degrees
         Where the camera stands: turned from the front to the shape's left, risen from the ground.
     up : "y" or "z"
@@ -81,8 +84,9 @@ def render(
     """
     if Path(path).suffix.lower() != ".png":
         raise FileError(f"{path}: expected a name that ends in .png")
-    if not panels or up not in ("y", "z") or not 64 * len(panels) <= width <= 16384:
-        found = f"{len(panels)} panels, {up}, {width} pixels"
+    row = len(panels) if columns is None else columns
+    if not panels or row < 1 or up not in ("y", "z") or not 64 * row <= width <= 16384:
+        found = f"{len(panels)} panels, {row} in a row, {up}, {width} pixels"
         raise ArgumentError(
             f"expected at least one panel, up as y or z, a width of 64 pixels a panel to 16384, found {found}"
         )
@@ -99,7 +103,7 @@ def render(
     size = float(np.ptp(everything, axis=0).max()) or 1.0
     everything = (everything - origin) / size  # graphics cards count in single precision
 
-    panel_width = width // len(panels)
+    panel_width = width // row
     camera = fitted(everything, azimuth=azimuth, elevation=elevation, up=up, aspects=ASPECTS)
     pictures = []
     for number in range(len(panels)):
@@ -119,7 +123,7 @@ def render(
     legend = [] if control_points is None else [(SOURCE, "control point")]
     if legend and (len(panels) > 1 or (p != q).any()):
         legend.insert(0, (TARGET, "target"))
-    write_atomically(path, png(pictures, titles, width, legend=legend, weights=weights))
+    write_atomically(path, png(pictures, titles, width, columns=row, legend=legend, weights=weights))
 
 
 def _in_space(values: ArrayLike, what: str) -> Array:

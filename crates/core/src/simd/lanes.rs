@@ -24,6 +24,12 @@ pub(crate) trait Lanes: Copy {
     fn splat(value: f32) -> Self;
     fn load(from: &[f32; WIDTH]) -> Self;
     fn store(self) -> [f32; WIDTH];
+    /// Writes the first lanes, as many as there is room for.
+    #[inline(always)]
+    fn store_first(self, to: &mut [f32]) {
+        let count = to.len().min(WIDTH);
+        to[..count].copy_from_slice(&self.store()[..count]);
+    }
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
@@ -31,7 +37,10 @@ pub(crate) trait Lanes: Copy {
     /// `self * b + c`, rounded once where the instruction set can.
     fn mul_add(self, b: Self, c: Self) -> Self;
     fn max(self, other: Self) -> Self;
-    fn sqrt(self) -> Self;
+    /// `1 / self` to 11 bits or more, in a fraction of the time of a division.
+    fn estimated_inverse(self) -> Self;
+    /// `1 / sqrt(self)` to 11 bits or more.
+    fn estimated_inverse_sqrt(self) -> Self;
     fn abs(self) -> Self;
     /// `places`, each below 16, as [`permute`](Lanes::permute) wants them.
     fn places(places: &[u32; WIDTH]) -> Self::Places;
@@ -39,8 +48,26 @@ pub(crate) trait Lanes: Copy {
     fn permute(self, places: Self::Places) -> Self;
     /// The lanes where `self < other`.
     fn less(self, other: Self) -> Self::Mask;
+    /// The lanes of the mask as bits, the first lane in the lowest.
+    fn bits(mask: Self::Mask) -> u32;
     /// `yes` in the lanes of the mask, `no` in the others.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// `1 / self` to about 2e-7 of it, for normal numbers.
+    #[inline(always)]
+    fn inverse(self) -> Self {
+        let y = self.estimated_inverse();
+        let rest = Self::splat(1.0).sub(self.mul(y));
+        y.mul_add(rest, y)
+    }
+
+    /// `1 / sqrt(self)` to about 4e-7 of it, for normal numbers above 0.
+    #[inline(always)]
+    fn inverse_sqrt(self) -> Self {
+        let y = self.estimated_inverse_sqrt();
+        let rest = Self::splat(1.0).sub(self.mul(y).mul(y));
+        y.mul(Self::splat(0.5)).mul_add(rest, y)
+    }
 
     /// The sum of the lanes, pairwise: the same order on every instruction set.
     #[inline(always)]
@@ -108,8 +135,12 @@ impl Lanes for Portable {
         self.zip(other, |a, b| if a > b { a } else { b })
     }
     #[inline(always)]
-    fn sqrt(self) -> Self {
-        Portable(self.0.map(f32::sqrt))
+    fn estimated_inverse(self) -> Self {
+        Portable(self.0.map(|v| 1.0 / v))
+    }
+    #[inline(always)]
+    fn estimated_inverse_sqrt(self) -> Self {
+        Portable(self.0.map(|v| 1.0 / v.sqrt()))
     }
     #[inline(always)]
     fn abs(self) -> Self {
@@ -126,6 +157,10 @@ impl Lanes for Portable {
     #[inline(always)]
     fn less(self, other: Self) -> Self::Mask {
         std::array::from_fn(|l| self.0[l] < other.0[l])
+    }
+    #[inline(always)]
+    fn bits(mask: Self::Mask) -> u32 {
+        mask.iter().rev().fold(0, |bits, lane| 2 * bits + u32::from(*lane))
     }
     #[inline(always)]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
@@ -179,7 +214,8 @@ mod x86 {
             div(other) = _mm256_div_ps;
             mul_add(b, c) = _mm256_fmadd_ps;
             max(other) = _mm256_max_ps;
-            sqrt() = _mm256_sqrt_ps;
+            estimated_inverse() = _mm256_rcp_ps;
+            estimated_inverse_sqrt() = _mm256_rsqrt_ps;
         }
         #[inline(always)]
         fn splat(value: f32) -> Self {
@@ -238,6 +274,11 @@ mod x86 {
             }
         }
         #[inline(always)]
+        fn bits(mask: Self::Mask) -> u32 {
+            // SAFETY: as above.
+            unsafe { (_mm256_movemask_ps(mask.0) | _mm256_movemask_ps(mask.1) << 8) as u32 }
+        }
+        #[inline(always)]
         fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
             // SAFETY: as above.
             unsafe { Avx2(_mm256_blendv_ps(no.0, yes.0, mask.0), _mm256_blendv_ps(no.1, yes.1, mask.1)) }
@@ -256,7 +297,8 @@ mod x86 {
             div(other) = _mm512_div_ps;
             mul_add(b, c) = _mm512_fmadd_ps;
             max(other) = _mm512_max_ps;
-            sqrt() = _mm512_sqrt_ps;
+            estimated_inverse() = _mm512_rcp14_ps;
+            estimated_inverse_sqrt() = _mm512_rsqrt14_ps;
         }
         #[inline(always)]
         fn splat(value: f32) -> Self {
@@ -274,6 +316,12 @@ mod x86 {
             // SAFETY: as above; 16 numbers may be written.
             unsafe { _mm512_storeu_ps(to.as_mut_ptr(), self.0) };
             to
+        }
+        #[inline(always)]
+        fn store_first(self, to: &mut [f32]) {
+            let mask = ((1u32 << to.len().min(WIDTH)) - 1) as __mmask16;
+            // SAFETY: as above; where the mask is set there is room.
+            unsafe { _mm512_mask_storeu_ps(to.as_mut_ptr(), mask, self.0) }
         }
         #[inline(always)]
         fn abs(self) -> Self {
@@ -294,6 +342,10 @@ mod x86 {
         fn less(self, other: Self) -> Self::Mask {
             // SAFETY: as above.
             unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn bits(mask: Self::Mask) -> u32 {
+            u32::from(mask)
         }
         #[inline(always)]
         fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {

@@ -13,7 +13,7 @@
 //! as if it had been 6e-8 of itself more or less, and w_second makes the sum of the rounded ones 1 exactly, in double
 //! precision. (A single w_second would put the error of the sum of a thousand weights on one of them.)
 
-use crate::parallel::for_each_block;
+use crate::memory::filled;
 use crate::simd::loops::{multiply_add_f32, multiversion_loops};
 use crate::simd::Simd;
 
@@ -41,10 +41,10 @@ impl PackedWeights {
     pub(crate) fn new(logits: &[f32], m: usize, temperature: f64, old: Option<PackedWeights>) -> Self {
         debug_assert!(m > 0 && u32::try_from(m).is_ok() && logits.len().is_multiple_of(m));
         let size = m + MORE;
-        let mut rows = old.map(|old| old.rows).unwrap_or_default();
-        rows.resize((logits.len() / m).div_ceil(LANES) * size, Row([0.0; LANES]));
+        let count = (logits.len() / m).div_ceil(LANES) * size;
+        let memory = old.map(|old| old.rows).unwrap_or_default();
         let simd = Simd::detect();
-        for_each_block(&mut rows, BLOCKS * size, |index, rows| {
+        let rows = filled(memory, count, Row([0.0; LANES]), BLOCKS * size, |index, rows| {
             let logits = &logits[BLOCKS * LANES * m * index..];
             for (rows, logits) in rows.chunks_exact_mut(size).zip(logits.chunks(LANES * m)) {
                 if logits.len() == LANES * m {

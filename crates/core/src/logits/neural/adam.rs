@@ -42,8 +42,11 @@ impl Rates {
     ) {
         let m = L::splat(B1).mul(L::load(first)).add(L::splat(REST_1).mul(gradients));
         let v = L::splat(B2).mul(L::load(second)).add(L::splat(REST_2).mul(gradients).mul(gradients));
-        let divisor = v.sqrt().mul_add(L::splat(self.correction), L::splat(EPSILON));
-        let step = L::splat(self.rate).mul(m).div(divisor);
+        // A root and a quotient by Newton's method from estimates: exact ones take longer than all the rest.
+        let positive = v.max(L::splat(f32::MIN_POSITIVE));
+        let root = positive.mul(positive.inverse_sqrt());
+        let divisor = root.mul_add(L::splat(self.correction), L::splat(EPSILON));
+        let step = L::splat(self.rate).mul(m).mul(divisor.inverse());
         (*first, *second) = (m.store(), v.store());
         *parameters = L::load(parameters).sub(step).store();
     }

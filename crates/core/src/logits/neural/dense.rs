@@ -9,7 +9,6 @@ use super::network::{relu, Layer, Network};
 use crate::error::Error;
 use crate::parallel::{for_each_block, for_each_task, SharedRows};
 use crate::progress::{report, Progress};
-use crate::simd::WIDTH;
 use crate::tree::{Order, PointTree};
 
 /// Points evaluated at once by one thread: the activations of both hidden layers stay in its cache.
@@ -64,9 +63,7 @@ pub(super) unsafe fn evaluate_places(
     let (dim, m) = (network.dim(), network.outputs());
     let mut input = Vec::new();
     for place in places.clone() {
-        let block = &tree.blocks()[place / WIDTH];
-        let x: [f32; 3] = std::array::from_fn(|k| block[k].0[place % WIDTH]);
-        features::append(&x[..dim], network.frequencies(), &mut input);
+        features::append(&tree.point(place)[..dim], network.frequencies(), &mut input);
     }
     let mut logits = vec![0.0; places.len() * m];
     evaluate(network, input, &mut logits);

@@ -3,8 +3,13 @@
 use super::network::Layer;
 use crate::parallel::for_each_block;
 
-/// Neurons a block.
-const ROWS: usize = 64;
+/// Multiplications a block: fewer are done before another thread has begun.
+const WORK: usize = 1 << 18;
+
+/// Neurons a block, each with so many multiplications.
+fn rows(work: usize) -> usize {
+    (WORK / work.max(1)).max(1).next_multiple_of(64)
+}
 
 /// A matrix of which a product reads `rows x columns` numbers, `row` and `column` apart.
 #[derive(Clone, Copy)]
@@ -46,8 +51,9 @@ pub(super) fn multiply(n: usize, k: usize, m: usize, a: View<'_>, b: View<'_>, b
 /// `out = W input + b`; `input` is inputs x m, `out` outputs x m.
 pub(super) fn forward(layer: &Layer, input: &[f32], m: usize, out: &mut [f32]) {
     let k = layer.inputs();
-    for_each_block(out, ROWS * m, |block, out| {
-        let (first, rows) = (ROWS * block, out.len() / m);
+    let size = rows(k * m);
+    for_each_block(out, size * m, |block, out| {
+        let (first, rows) = (size * block, out.len() / m);
         for (row, bias) in out.chunks_exact_mut(m).zip(&layer.bias[first..]) {
             row.fill(*bias);
         }
@@ -60,8 +66,9 @@ pub(super) fn forward(layer: &Layer, input: &[f32], m: usize, out: &mut [f32]) {
 pub(super) fn backward(layer: &Layer, error: &[f32], input: &[f32], m: usize) -> Vec<f32> {
     let k = layer.inputs();
     let mut out = vec![0.0; k * m];
-    for_each_block(&mut out, ROWS * m, |block, out| {
-        let (first, rows) = (ROWS * block, out.len() / m);
+    let size = rows(layer.outputs() * m);
+    for_each_block(&mut out, size * m, |block, out| {
+        let (first, rows) = (size * block, out.len() / m);
         let transposed = View { data: &layer.weight[first..], row: 1, column: k };
         multiply(rows, layer.outputs(), m, transposed, View { data: error, row: m, column: 1 }, 0.0, out);
         for (gradient, input) in out.iter_mut().zip(&input[m * first..]) {

@@ -14,71 +14,81 @@
 
 use super::adam::Rates;
 use super::network::Layer;
-use crate::parallel::for_each_block;
-use crate::simd::{multiversion, Lanes, Simd, WIDTH};
+use crate::parallel::{for_each_block, for_each_block_pair};
+use crate::simd::{multiversion, Aligned, Lanes, Simd, WIDTH};
 
 /// Rows that share the loads of the input.
 const ROWS: usize = 8;
-/// Rows that one thread takes at a time.
-const GROUP: usize = 128;
-
-type Columns = [f32; WIDTH];
+/// Rows that one thread takes at a time in a pass back: each group has a sum of its own.
+const BACK: usize = 128;
+/// Rows that one thread takes at a time in an update: their weights are still in its cache for the product.
+const GROUP: usize = 32;
 
 /// Activations of some neurons for every control point, `[neuron / 16][control point][16]`, neurons padded with zeros.
 #[derive(Clone, Default)]
 pub(super) struct Activations {
-    lanes: Vec<Columns>,
+    lanes: Vec<Aligned>,
 }
 
 impl Activations {
-    /// From `values`, neurons x m.
-    pub(super) fn of(values: &[f32], m: usize) -> Activations {
-        let neurons = values.len() / m;
-        let mut lanes = vec![[0.0; WIDTH]; neurons.div_ceil(WIDTH) * m];
-        for (neuron, row) in values.chunks_exact(m).enumerate() {
-            for (i, value) in row.iter().enumerate() {
-                lanes[neuron / WIDTH * m + i][neuron % WIDTH] = *value;
+    /// Of the `neurons` of `values`, which is neurons x m.
+    pub(super) fn of(values: &[f32], m: usize, neurons: &[usize]) -> Activations {
+        let mut lanes = vec![Aligned::ZERO; neurons.len().div_ceil(WIDTH) * m];
+        for (at, neuron) in neurons.iter().enumerate() {
+            for (i, value) in values[neuron * m..(neuron + 1) * m].iter().enumerate() {
+                lanes[at / WIDTH * m + i].0[at % WIDTH] = *value;
             }
         }
         Activations { lanes }
     }
-
-    /// Back to neurons x m.
-    fn values(&self, neurons: usize, m: usize) -> Vec<f32> {
-        (0..neurons * m).map(|at| self.lanes[at / m / WIDTH * m + at % m][at / m % WIDTH]).collect()
-    }
 }
 
-/// The layer's weights with Adam's moments, rows padded to whole lanes.
+/// The layer's weights with Adam's moments. Of the inputs it has those only that fire for a control point: the others' weights
+/// have no gradient and never change.
 pub(super) struct Hidden {
     simd: Simd,
-    weight: Vec<Columns>,
-    first: Vec<Columns>,
-    second: Vec<Columns>,
-    /// Lanes a row.
+    /// `[row][weights, first moments, second moments][lanes]`: what an update streams lies in one stretch.
+    state: Vec<Aligned>,
+    inputs: Vec<usize>,
+    /// Lanes of a row's weights: an odd number, so that rows do not lie a multiple of a memory page apart, where a processor
+    /// takes a load of one for a load of what was just stored to another.
     row: usize,
     /// Whether a row ever had an error.
     awake: Vec<bool>,
 }
 
 impl Hidden {
-    pub(super) fn new(layer: &Layer) -> Hidden {
-        let row = layer.inputs().div_ceil(WIDTH);
-        let mut weight = vec![[0.0; WIDTH]; layer.outputs() * row];
-        for (weights, padded) in layer.weight.chunks_exact(layer.inputs()).zip(weight.chunks_exact_mut(row)) {
-            padded.as_flattened_mut()[..weights.len()].copy_from_slice(weights);
+    /// Of the layer's weights for some of its inputs.
+    pub(super) fn new(layer: &Layer, inputs: Vec<usize>) -> Hidden {
+        let row = inputs.len().div_ceil(WIDTH) | 1;
+        let mut state = vec![Aligned::ZERO; layer.outputs() * 3 * row];
+        for (weights, state) in layer.weight.chunks_exact(layer.inputs()).zip(state.chunks_exact_mut(3 * row))
+        {
+            for (lanes, inputs) in state.iter_mut().zip(inputs.chunks(WIDTH)) {
+                for (lane, input) in lanes.0.iter_mut().zip(inputs) {
+                    *lane = weights[*input];
+                }
+            }
         }
-        let zeros = vec![[0.0; WIDTH]; weight.len()];
-        let awake = vec![false; layer.outputs()];
-        Hidden { simd: Simd::detect(), first: zeros.clone(), second: zeros, weight, row, awake }
+        Hidden { simd: Simd::detect(), state, row, inputs, awake: vec![false; layer.outputs()] }
+    }
+
+    /// The inputs that it has weights for.
+    pub(super) fn inputs(&self) -> &[usize] {
+        &self.inputs
     }
 
     /// Writes the weights back.
     pub(super) fn store(&self, layer: &mut Layer) {
-        let inputs = layer.inputs();
-        for (weights, padded) in layer.weight.chunks_exact_mut(inputs).zip(self.weight.chunks_exact(self.row))
+        let count = layer.inputs();
+        for (weights, state) in
+            layer.weight.chunks_exact_mut(count).zip(self.state.chunks_exact(3 * self.row))
         {
-            weights.copy_from_slice(&padded.as_flattened()[..inputs]);
+            for (lanes, inputs) in state.iter().zip(self.inputs.chunks(WIDTH)) {
+                for (lane, input) in lanes.0.iter().zip(inputs) {
+                    weights[*input] = *lane;
+                }
+            }
         }
     }
 
@@ -87,29 +97,29 @@ impl Hidden {
         let mut z = vec![0.0; self.awake.len() * m];
         let (simd, row) = (self.simd, self.row);
         for_each_block(&mut z, GROUP * m, |group, z| {
-            let weight = &self.weight[GROUP * row * group..][..z.len() / m * row];
-            product(simd, weight, row, &input.lanes, m, z);
+            product(simd, &self.state[GROUP * 3 * row * group..], row, &input.lanes, m, z);
         });
         z
     }
 
-    /// `W^T error`, the gradient with respect to the input: `inputs` x m, for `error` outputs x m.
-    pub(super) fn backward(&self, error: &[f32], inputs: usize, m: usize) -> Vec<f32> {
+    /// `W^T error`, the gradient with respect to the inputs: inputs x m, for `error` outputs x m.
+    pub(super) fn backward(&self, error: &[f32], m: usize) -> Vec<f32> {
         let (simd, row) = (self.simd, self.row);
         // A sum for each group of rows, added in their order: the same whichever thread did which.
-        let mut sums = vec![[0.0; WIDTH]; self.awake.len().div_ceil(GROUP) * row * m];
-        for_each_block(&mut sums, row * m, |group, sum| {
-            let error = &error[GROUP * m * group..];
-            let error = &error[..error.len().min(GROUP * m)];
-            transposed_product(simd, &self.weight[GROUP * row * group..], row, error, m, sum);
+        let size = self.inputs.len().div_ceil(WIDTH).max(1) * m;
+        let mut sums = vec![Aligned::ZERO; self.awake.len().div_ceil(BACK) * size];
+        for_each_block(&mut sums, size, |group, sum| {
+            let error = &error[BACK * m * group..];
+            let error = &error[..error.len().min(BACK * m)];
+            transposed_product(simd, &self.state[BACK * 3 * row * group..], row, error, m, sum);
         });
-        let (total, others) = sums.split_at_mut(row * m);
-        for other in others.chunks_exact(row * m) {
-            for (total, other) in total.as_flattened_mut().iter_mut().zip(other.as_flattened()) {
-                *total += other;
+        let (total, others) = sums.split_at_mut(size);
+        for other in others.chunks_exact(size) {
+            for (total, other) in total.iter_mut().zip(other) {
+                total.0.iter_mut().zip(&other.0).for_each(|(total, other)| *total += other);
             }
         }
-        Activations { lanes: total.to_vec() }.values(inputs, m)
+        (0..self.inputs.len() * m).map(|at| total[at / m / WIDTH * m + at % m].0[at / m % WIDTH]).collect()
     }
 
     /// Adam with the gradient `error input^T`, and `W next_input` with the new weights: outputs x m.
@@ -121,36 +131,17 @@ impl Hidden {
         m: usize,
         rates: Rates,
     ) -> Vec<f32> {
-        struct Group<'a> {
-            weight: &'a mut [Columns],
-            first: &'a mut [Columns],
-            second: &'a mut [Columns],
-            rows: Vec<usize>,
-            error: &'a [f32],
-            z: &'a mut [f32],
-        }
         let (simd, row) = (self.simd, self.row);
         for (awake, error) in self.awake.iter_mut().zip(error.chunks_exact(m)) {
             *awake |= error.iter().any(|e| *e != 0.0);
         }
         let mut z = vec![0.0; self.awake.len() * m];
-        let mut groups: Vec<Group<'_>> = self
-            .weight
-            .chunks_mut(GROUP * row)
-            .zip(self.first.chunks_mut(GROUP * row))
-            .zip(self.second.chunks_mut(GROUP * row))
-            .zip(self.awake.chunks(GROUP))
-            .zip(error.chunks(GROUP * m))
-            .zip(z.chunks_mut(GROUP * m))
-            .map(|(((((weight, first), second), awake), error), z)| {
-                let rows = (0..awake.len()).filter(|r| awake[*r]).collect();
-                Group { weight, first, second, rows, error, z }
-            })
-            .collect();
-        for_each_block(&mut groups, 1, |_, group| {
-            let Group { weight, first, second, rows, error, z } = &mut group[0];
-            update(simd, weight, first, second, row, rows, error, &input.lanes, m, rates);
-            product(simd, weight, row, &next_input.lanes, m, z);
+        let awake = &self.awake;
+        for_each_block_pair(&mut self.state, GROUP * 3 * row, &mut z, GROUP * m, |group, state, z| {
+            let (first, count) = (GROUP * group, z.len() / m);
+            let rows: Vec<usize> = (0..count).filter(|r| awake[first + r]).collect();
+            update(simd, state, row, &rows, &error[first * m..(first + count) * m], &input.lanes, m, rates);
+            product(simd, state, row, &next_input.lanes, m, z);
         });
         z
     }
@@ -158,21 +149,17 @@ impl Hidden {
 
 multiversion! {
     fn update(
-        weight: &mut [Columns], first: &mut [Columns], second: &mut [Columns], row: usize, rows: &[usize],
-        error: &[f32], input: &[Columns], m: usize, rates: Rates,
+        state: &mut [Aligned], row: usize, rows: &[usize], error: &[f32], input: &[Aligned], m: usize, rates: Rates,
     ) = update_body
 }
 
 #[inline(always)]
-#[allow(clippy::too_many_arguments)]
 fn update_body<L: Lanes>(
-    weight: &mut [Columns],
-    first: &mut [Columns],
-    second: &mut [Columns],
+    state: &mut [Aligned],
     row: usize,
     rows: &[usize],
     error: &[f32],
-    input: &[Columns],
+    input: &[Aligned],
     m: usize,
     rates: Rates,
 ) {
@@ -187,39 +174,40 @@ fn update_body<L: Lanes>(
         for (c, input) in input.chunks_exact(m).enumerate() {
             let mut gradient = [L::splat(0.0); ROWS];
             for (x, e) in input.iter().zip(&errors) {
-                let x = L::load(x);
+                let x = L::load(&x.0);
                 for r in 0..ROWS {
                     gradient[r] = L::splat(e[r]).mul_add(x, gradient[r]);
                 }
             }
             for (at, gradient) in rows.iter().zip(gradient) {
-                let at = at * row + c;
-                rates.descend_lanes(&mut weight[at], &mut first[at], &mut second[at], gradient);
+                let (weights, moments) = state[at * 3 * row..(at + 1) * 3 * row].split_at_mut(row);
+                let (first, second) = moments.split_at_mut(row);
+                rates.descend_lanes(&mut weights[c].0, &mut first[c].0, &mut second[c].0, gradient);
             }
         }
     }
 }
 
 multiversion! {
-    fn product(weight: &[Columns], row: usize, input: &[Columns], m: usize, z: &mut [f32]) = product_body
+    fn product(state: &[Aligned], row: usize, input: &[Aligned], m: usize, z: &mut [f32]) = product_body
 }
 
 /// `z = W input`, 4 rows and 4 control points at a time.
 #[inline(always)]
-fn product_body<L: Lanes>(weight: &[Columns], row: usize, input: &[Columns], m: usize, z: &mut [f32]) {
+fn product_body<L: Lanes>(state: &[Aligned], row: usize, input: &[Aligned], m: usize, z: &mut [f32]) {
     const TILE: usize = 4;
     let rows = z.len() / m;
     for r in (0..rows).step_by(TILE) {
         // A last, smaller tile repeats its last row and point: the same sum is written again.
         let tile_rows: [usize; TILE] = std::array::from_fn(|k| (r + k).min(rows - 1));
-        let weight = tile_rows.map(|r| &weight[r * row..(r + 1) * row]);
+        let weight = tile_rows.map(|r| &state[r * 3 * row..][..row]);
         for i in (0..m).step_by(TILE) {
             let points: [usize; TILE] = std::array::from_fn(|k| (i + k).min(m - 1));
             let mut sums = [[L::splat(0.0); TILE]; TILE];
-            for (c, input) in input.chunks_exact(m).take(row).enumerate() {
-                let x = points.map(|i| L::load(&input[i]));
+            for (c, input) in input.chunks_exact(m).enumerate() {
+                let x = points.map(|i| L::load(&input[i].0));
                 for k in 0..TILE {
-                    let w = L::load(&weight[k][c]);
+                    let w = L::load(&weight[k][c].0);
                     for i in 0..TILE {
                         sums[k][i] = w.mul_add(x[i], sums[k][i]);
                     }
@@ -235,18 +223,18 @@ fn product_body<L: Lanes>(weight: &[Columns], row: usize, input: &[Columns], m: 
 }
 
 multiversion! {
-    fn transposed_product(weight: &[Columns], row: usize, error: &[f32], m: usize, sum: &mut [Columns]) =
+    fn transposed_product(state: &[Aligned], row: usize, error: &[f32], m: usize, sum: &mut [Aligned]) =
         transposed_product_body
 }
 
 /// `sum = W^T error` over the rows of one group.
 #[inline(always)]
 fn transposed_product_body<L: Lanes>(
-    weight: &[Columns],
+    state: &[Aligned],
     row: usize,
     error: &[f32],
     m: usize,
-    sum: &mut [Columns],
+    sum: &mut [Aligned],
 ) {
     let has_error = |r: &usize| error[r * m..(r + 1) * m].iter().any(|e| *e != 0.0);
     let rows: Vec<usize> = (0..error.len() / m).filter(has_error).collect();
@@ -255,18 +243,18 @@ fn transposed_product_body<L: Lanes>(
         for (i, errors) in errors.iter_mut().enumerate() {
             *errors = std::array::from_fn(|r| rows.get(r).map_or(0.0, |at| error[at * m + i]));
         }
-        let weight: [&[Columns]; ROWS] = std::array::from_fn(|r| {
+        let weight: [&[Aligned]; ROWS] = std::array::from_fn(|r| {
             let at = rows.get(r).unwrap_or(&rows[0]);
-            &weight[at * row..(at + 1) * row]
+            &state[at * 3 * row..][..row]
         });
-        for (c, sum) in sum.chunks_exact_mut(m).take(row).enumerate() {
-            let w: [L; ROWS] = std::array::from_fn(|r| L::load(&weight[r][c]));
+        for (c, sum) in sum.chunks_exact_mut(m).enumerate() {
+            let w: [L; ROWS] = std::array::from_fn(|r| L::load(&weight[r][c].0));
             for (sum, e) in sum.iter_mut().zip(&errors) {
-                let mut total = L::load(sum);
+                let mut total = L::load(&sum.0);
                 for r in 0..ROWS {
                     total = L::splat(e[r]).mul_add(w[r], total);
                 }
-                *sum = total.store();
+                *sum = Aligned(total.store());
             }
         }
     }

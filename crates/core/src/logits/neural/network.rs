@@ -3,6 +3,7 @@
 use super::{dense, features, piecewise};
 use crate::error::{check_points, Error};
 use crate::frame::Frame;
+use crate::memory::in_large_pages;
 use crate::progress::{report, Progress};
 use crate::simd::Simd;
 use crate::tree::{Order, PointTree, LEAF};
@@ -35,6 +36,7 @@ pub struct Network {
     pub(super) frame: Frame,
     pub(super) frequencies: Vec<f32>,
     pub(super) layers: [Layer; 3],
+    pub(super) prepared: piecewise::Prepared,
 }
 
 impl Network {
@@ -69,7 +71,7 @@ impl Network {
         if numbers().any(|v| !v.is_finite()) {
             return Err(Error::argument("network", "a parameter is not finite"));
         }
-        Ok(Network { dim, frame, frequencies, layers })
+        Ok(Network { dim, frame, frequencies, layers, prepared: piecewise::Prepared::default() })
     }
 
     /// Coordinates a point.
@@ -118,6 +120,7 @@ impl Network {
     /// network's.
     pub fn logits_of_tree(&self, tree: &PointTree, progress: &mut Progress<'_>) -> Result<Vec<f32>, Error> {
         let mut logits = vec![0.0; tree.len() * self.outputs()];
+        in_large_pages(&mut logits);
         self.write_logits_of_tree(tree, Order::Given, &mut logits, progress)?;
         Ok(logits)
     }

@@ -8,6 +8,7 @@ use super::adam::{Adam, Rates};
 use super::hidden::{Activations, Hidden};
 use super::initialise::Random;
 use super::network::{relu, Layer, Network};
+use super::piecewise::Prepared;
 use super::{features, gemm};
 use crate::error::{check_number, check_points, Error};
 use crate::frame::Frame;
@@ -220,30 +221,29 @@ impl Trainer {
         let m = p.len() / network.dim();
         let features = network.features(p);
         let width = features.len() / m;
+        let input: Vec<f32> = (0..features.len()).map(|at| features[at % m * width + at / m]).collect();
         let [a, b, c] = network.layers();
+        let first = activations(a, &input, m);
+        // A neuron that fires for no control point has no gradient, and so never will.
+        let fires = |neuron: &usize| first[neuron * m..(neuron + 1) * m].iter().any(|value| *value > 0.0);
+        let hidden = Hidden::new(b, (0..a.outputs()).filter(fires).collect());
+        let first_lanes = Activations::of(&first, m, hidden.inputs());
+        let product = hidden.forward(&first_lanes, m);
         let mut trainer = Trainer {
-            hidden: Hidden::new(b),
+            hidden,
             weights: [a, c].map(|layer| Adam::new(&layer.weight)),
             biases: [a, b, c].map(|layer| Adam::new(&layer.bias)),
             steps: 0,
             m,
-            input: (0..features.len()).map(|at| features[at % m * width + at / m]).collect(),
-            first: vec![0.0; a.outputs() * m],
-            first_lanes: Activations::default(),
+            input,
+            first,
+            first_lanes,
             second: Vec::new(),
             error: vec![0.0; c.outputs() * m],
             network,
         };
-        trainer.evaluate_first();
-        let product = trainer.hidden.forward(&trainer.first_lanes, m);
         trainer.activate_second(product);
         trainer
-    }
-
-    fn evaluate_first(&mut self) {
-        gemm::forward(&self.network.layers[0], &self.input, self.m, &mut self.first);
-        relu(&mut self.first);
-        self.first_lanes = Activations::of(&self.first, self.m);
     }
 
     /// Takes the middle layer's product with the first activations, without its biases.
@@ -285,10 +285,11 @@ impl Trainer {
         let [a, b, c] = &mut self.network.layers;
         // Errors go back through the layers as they were; then each is updated.
         let second_error = gemm::backward(c, &self.error, &self.second, m);
-        let mut first_error = self.hidden.backward(&second_error, b.inputs(), m);
-        for (error, activation) in first_error.iter_mut().zip(&self.first) {
-            if *activation <= 0.0 {
-                *error = 0.0;
+        let mut first_error = vec![0.0; self.first.len()];
+        let found = self.hidden.backward(&second_error, m);
+        for (neuron, errors) in self.hidden.inputs().iter().zip(found.chunks_exact(m)) {
+            for (i, error) in (neuron * m..(neuron + 1) * m).zip(errors) {
+                first_error[i] = if self.first[i] > 0.0 { *error } else { 0.0 };
             }
         }
         self.weights[1].update_weights(&mut c.weight, &self.error, &self.second, m, rates);
@@ -297,16 +298,27 @@ impl Trainer {
         self.weights[0].update_weights(&mut a.weight, &first_error, &self.input, m, rates);
         self.biases[0].update_biases(&mut a.bias, &first_error, m, rates);
 
-        let input = std::mem::take(&mut self.first_lanes);
-        self.evaluate_first();
-        let product = self.hidden.update_and_forward(&second_error, &input, &self.first_lanes, m, rates);
+        self.first = activations(a, &self.input, m);
+        let next = Activations::of(&self.first, m, self.hidden.inputs());
+        let product = self.hidden.update_and_forward(&second_error, &self.first_lanes, &next, m, rates);
+        self.first_lanes = next;
         self.activate_second(product);
     }
 
     fn finish(mut self) -> Network {
+        // Laid out, if at all, from the parameters that it had.
+        self.network.prepared = Prepared::default();
         self.hidden.store(&mut self.network.layers[1]);
         self.network
     }
+}
+
+/// `relu(W input + b)`, outputs x m.
+fn activations(layer: &Layer, input: &[f32], m: usize) -> Vec<f32> {
+    let mut values = vec![0.0; layer.outputs() * m];
+    gemm::forward(layer, input, m, &mut values);
+    relu(&mut values);
+    values
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What an affine map can be over a box.
 
-use crate::simd::Lanes;
+use crate::simd::{Lanes, WIDTH};
 use crate::tree::Region;
 
 /// Bounds are widened by this much of the magnitudes that they were computed from, so that they hold in spite of rounding,
@@ -19,4 +19,23 @@ pub(super) fn bounds<L: Lanes>(map: [L; 4], spread: L, region: &Region) -> (L, L
     }
     half = size.add(half).mul_add(L::splat(SLACK), half);
     (middle.sub(half), middle.add(half))
+}
+
+/// Which lanes are surely on, and which may be on or off; the others are surely off. A lane without bounds may be either.
+#[inline(always)]
+pub(super) fn classify<L: Lanes>(lower: L, upper: L) -> [u32; 2] {
+    let off = L::bits(upper.less(L::splat(f32::MIN_POSITIVE)));
+    let on = L::bits(L::splat(-f32::MIN_POSITIVE).less(lower)) & !off;
+    [on, !(on | off) & ((1 << WIDTH) - 1)]
+}
+
+/// The numbers of the bits that are set.
+#[inline(always)]
+pub(super) fn lanes_of(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = bits.trailing_zeros() as usize;
+        let found = bits != 0;
+        bits &= bits.wrapping_sub(1);
+        found.then_some(lane % WIDTH)
+    })
 }

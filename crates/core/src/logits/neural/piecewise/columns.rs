@@ -1,6 +1,6 @@
 //! Layer 1 over a box: which of its neurons are surely on, surely off, or open. In layer 2 each of them is a column.
 
-use super::bounds::bounds;
+use super::bounds::{bounds, classify, lanes_of};
 use super::rows::loads;
 use crate::simd::{multiversion, Aligned, Lanes, WIDTH};
 use crate::tree::Region;
@@ -50,11 +50,8 @@ multiversion! {
 
 #[inline(always)]
 fn sort_body<L: Lanes>(parent: &Columns, region: &Region, child: &mut Columns, sorted: &mut Sorted) {
-    // One more than can be needed, because a column is written before it is known whether it counts.
     for terms in [&mut sorted.on, &mut sorted.open] {
-        if terms.len() <= parent.len {
-            terms.resize(parent.len + 1, NO_TERM);
-        }
+        terms.resize(terms.len().max(parent.len), NO_TERM);
     }
     child.planes.clear();
     let [mut on, mut open] = [0, 0];
@@ -64,25 +61,27 @@ fn sort_body<L: Lanes>(parent: &Columns, region: &Region, child: &mut Columns, s
         // Between lower and upper relu(a) lies between slope * a and slope * a - slope * lower.
         let slope = upper.div(upper.sub(lower));
         let spread = slope.mul(lower).mul(L::splat(-0.5));
-        let (lower, upper) = (lower.store(), upper.store());
+        let [on_lanes, open_lanes] = classify(lower, upper);
+        // The last planes may have lanes without neurons.
+        let neurons = u32::MAX >> (32 - WIDTH.min(parent.len - WIDTH * chunk));
+        let row = |t: usize| [planes[0].0[t], planes[1].0[t], planes[2].0[t], planes[3].0[t]];
+        for t in lanes_of(on_lanes & neurons) {
+            sorted.on[on] = Term { map: row(t), spread: 0.0, column: (WIDTH * chunk + t) as u32 };
+            on += 1;
+        }
         let (slope, spread) = (slope.store(), spread.store());
-        for t in 0..WIDTH.min(parent.len - WIDTH * chunk) {
-            let (is_off, is_on) = (upper[t] <= 0.0, lower[t] >= 0.0);
-            let row = [planes[0].0[t], planes[1].0[t], planes[2].0[t], planes[3].0[t]];
-            let column = (WIDTH * chunk + t) as u32;
-            sorted.on[on] = Term { map: row, spread: 0.0, column };
-            on += usize::from(is_on & !is_off);
-            let s = slope[t];
+        for t in lanes_of(open_lanes & neurons) {
+            let (row, s) = (row(t), slope[t]);
             let map = [row[0] * s, row[1] * s, row[2] * s, row[3] * s + spread[t]];
-            sorted.open[open] = Term { map, spread: spread[t], column };
-            if open == WIDTH * child.planes.len() {
+            sorted.open[open] = Term { map, spread: spread[t], column: (WIDTH * chunk + t) as u32 };
+            if open % WIDTH == 0 {
                 child.planes.push([Aligned::ZERO; 4]);
             }
             let last = child.planes.last_mut().expect("pushed above");
             for k in 0..4 {
                 last[k].0[open % WIDTH] = row[k];
             }
-            open += usize::from(!is_on & !is_off);
+            open += 1;
         }
     }
     sorted.counts = [on, open];

@@ -6,12 +6,12 @@ use super::columns::{sort, Sorted};
 use super::leaf::{self, Activations};
 use super::node::Part;
 use super::rows::Rows;
-use super::whole::{Whole, PACK};
+use super::whole::{Prepared, Whole, PACK};
 use crate::error::Error;
 use crate::logits::neural::{dense, network::Network};
 use crate::parallel::{for_each_block, for_each_task, threads, SharedRows};
 use crate::progress::Progress;
-use crate::simd::{Simd, WIDTH};
+use crate::simd::{Aligned, Simd, WIDTH};
 use crate::tree::{Node, Order, PointTree, LEAF, LEAF_BLOCKS};
 
 /// Nodes of this depth are made from the whole network.
@@ -39,7 +39,7 @@ pub(crate) fn write_logits(
     let walk = Walk {
         simd,
         network,
-        whole: Whole::new(network),
+        whole: Prepared::of(network),
         tree,
         order,
         logits: SharedRows::new(logits, network.outputs()),
@@ -51,7 +51,7 @@ pub(crate) fn write_logits(
 struct Walk<'a> {
     simd: Simd,
     network: &'a Network,
-    whole: Whole,
+    whole: &'a Whole,
     tree: &'a PointTree,
     order: Order,
     logits: SharedRows<'a>,
@@ -113,7 +113,7 @@ impl Walk<'_> {
         if let (Some(halves), true) = (halves, depth < DEPTH) {
             return halves.into_iter().for_each(|half| self.find_tops(half, depth + 1, level, tops, dense));
         }
-        let whole = &self.whole;
+        let whole = self.whole;
         sort(
             self.simd,
             &whole.part.columns,
@@ -144,13 +144,13 @@ impl Walk<'_> {
         for (at, Level { part, sorted }) in tops[..nodes.len()].iter_mut().enumerate() {
             part.begin(self.simd, &self.whole.part, region(at), sorted, panels);
         }
-        for first in (0..self.whole.rows()).step_by(PACK) {
+        for first in (0..panels).step_by(PACK) {
             if stop() {
                 return;
             }
-            self.whole.pack(self.network, first, rows);
+            let (rows, panels) = self.whole.panels(self.network, first, rows);
             for (at, Level { part, sorted }) in tops[..nodes.len()].iter_mut().enumerate() {
-                part.absorb(self.simd, &self.whole.heads, rows, region(at), sorted);
+                part.absorb(self.simd, &self.whole.heads, rows, panels.clone(), region(at), sorted);
             }
         }
         for_each_block(&mut tops[..nodes.len()], 1, |at, top| {
@@ -190,7 +190,7 @@ impl Walk<'_> {
         for half in halves {
             let region = self.tree.region(half);
             child.begin(self.simd, part, region, sorted, part.rows.panels());
-            child.absorb(self.simd, &self.whole.heads, &part.rows, region, sorted);
+            child.absorb(self.simd, &self.whole.heads, &part.rows, 0..part.rows.panels(), region, sorted);
             self.descend(half, child, levels, activations, stop);
         }
     }
@@ -200,18 +200,16 @@ impl Walk<'_> {
         let rows = self.order.rows(self.tree, first..(first + LEAF).min(self.tree.len()));
         // They may be anywhere in memory: they are on their way while the first points are evaluated.
         rows.clone().for_each(|row| self.logits.prefetch(row));
-        let blocks = &self.tree.blocks()[node.first * LEAF_BLOCKS..];
-        let mut rows = rows;
-        for x in blocks.iter().take(LEAF_BLOCKS) {
-            leaf::evaluate(self.simd, part, &self.whole.heads, x, activations);
-            for (lane, row) in rows.by_ref().take(WIDTH).enumerate() {
-                // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
-                let row = unsafe { self.logits.row(row) };
-                for (logit, output) in row.iter_mut().zip(&activations.outputs) {
-                    *logit = output.0[lane];
-                }
-            }
+        // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
+        let mut rows = rows.map(|row| unsafe { self.logits.row(row) });
+        let mut logits: [&mut [f32]; LEAF] = std::array::from_fn(|_| rows.next().unwrap_or_default());
+        let count = LEAF.min(self.tree.len() - first);
+        let mut x = [[Aligned::ZERO; 3]; LEAF_BLOCKS];
+        let x = &mut x[..count.div_ceil(WIDTH)];
+        for (block, x) in x.iter_mut().enumerate() {
+            *x = self.tree.block(first + WIDTH * block);
         }
+        leaf::evaluate(self.simd, part, &self.whole.heads, x, activations, &mut logits[..count]);
     }
 
     fn dense(&self, node: Node) {

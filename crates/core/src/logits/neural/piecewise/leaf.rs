@@ -1,98 +1,124 @@
-//! The points of a leaf, 16 at a time in lanes, 8 rows at a time.
+//! The points of a leaf, all of them at once.
+//!
+//! Neurons are evaluated with points in lanes, some rows of layer 2 and all points at a time, so that a weight that was loaded
+//! serves them all. Logits are added up with outputs in lanes, some points at a time: so they come out point by point.
 
 use super::node::{Heads, Part};
+use super::rows::loads;
 use crate::simd::{multiversion, Aligned, Lanes, WIDTH};
+use crate::tree::LEAF_BLOCKS;
 
-/// Rows at a time: their sums and a few operands fill the registers.
-const ROWS: usize = 8;
+/// A number of each point of a leaf.
+type Points = [Aligned; LEAF_BLOCKS];
 
-/// Scratch of [`evaluate`].
+const NO_POINTS: Points = [Aligned::ZERO; LEAF_BLOCKS];
+
+/// Rows of layer 2 at a time, and points of which logits are added up at a time where there are many registers, or few.
+const ROWS: usize = 4;
+const MANY: usize = 16;
+const FEW: usize = 4;
+
+/// Scratch of [`evaluate`]: what the open neurons of both layers are at each point.
 #[derive(Default)]
 pub(super) struct Activations {
-    hidden: Vec<Aligned>,
-    rows: Vec<Aligned>,
-    /// Output by output, points in lanes.
-    pub outputs: Vec<Aligned>,
+    hidden: Vec<Points>,
+    rows: Vec<Points>,
 }
 
 multiversion! {
-    /// Evaluates `part` at 16 points.
+    /// Evaluates `part` at the points `x` of a leaf, and writes the logits of each into its row.
     pub(super) fn evaluate(
         part: &Part,
         heads: &Heads,
-        x: &[Aligned; 3],
+        x: &[[Aligned; 3]],
         activations: &mut Activations,
+        logits: &mut [&mut [f32]],
     ) = evaluate_body
 }
 
 #[inline(always)]
-fn evaluate_body<L: Lanes>(part: &Part, heads: &Heads, x: &[Aligned; 3], activations: &mut Activations) {
-    let Activations { hidden, rows, outputs } = activations;
-    let x = [L::load(&x[0].0), L::load(&x[1].0), L::load(&x[2].0)];
-    let columns = part.columns.len;
-    hidden.resize(columns.max(hidden.len()), Aligned::ZERO);
-    let hidden = &mut hidden[..columns];
-    for (planes, hidden) in part.columns.planes.iter().zip(hidden.chunks_mut(WIDTH)) {
-        for (j, hidden) in hidden.iter_mut().enumerate() {
-            *hidden = Aligned(affine(planes, j, x).max(L::splat(0.0)).store());
-        }
+fn evaluate_body<L: Lanes>(
+    part: &Part,
+    heads: &Heads,
+    x: &[[Aligned; 3]],
+    activations: &mut Activations,
+    logits: &mut [&mut [f32]],
+) {
+    let (columns, rows) = (part.columns.len, part.rows.ids.len());
+    let Activations { hidden: h, rows: z } = activations;
+    h.resize(columns.max(h.len()), NO_POINTS);
+    z.resize(rows.next_multiple_of(ROWS).max(z.len()), NO_POINTS);
+    let (h, z) = (&mut h[..columns], &mut z[..rows.next_multiple_of(ROWS)]);
+    if L::REGISTERS >= 32 && x.len() == LEAF_BLOCKS {
+        neurons::<L, LEAF_BLOCKS>(part, x, 0, h, z);
+    } else {
+        (0..x.len()).for_each(|block| neurons::<L, 1>(part, x, block, h, z));
     }
 
-    let padded = part.rows.ids.len().next_multiple_of(ROWS);
-    rows.resize(padded.max(rows.len()), Aligned::ZERO);
-    for (index, out) in rows[..padded].chunks_exact_mut(ROWS).enumerate() {
-        let (panel, place) = (index * ROWS / WIDTH, index * ROWS % WIDTH);
-        let mut sum = affines::<L, ROWS>(&part.rows.affine[panel], place, x);
-        for (weights, hidden) in part.rows.panel(panel).iter().zip(&*hidden) {
-            add(&mut sum, weights, place, hidden);
-        }
-        for r in 0..ROWS {
-            out[r] = Aligned(sum[r].max(L::splat(0.0)).store());
-        }
-    }
-
-    outputs.resize(heads.outputs.next_multiple_of(WIDTH), Aligned::ZERO);
-    for (group, out) in outputs.chunks_exact_mut(WIDTH).enumerate() {
-        let sources = Sources { part, heads, group, x, hidden, rows };
-        let (mut place, end) = (0, heads.outputs - WIDTH * group);
-        while place < end.min(WIDTH) {
-            let out = &mut out[place..];
-            place += match end - place {
-                1 => sources.add_up::<1>(place, out),
-                2 => sources.add_up::<2>(place, out),
-                3 | 4 => sources.add_up::<4>(place, out),
-                _ => sources.add_up::<ROWS>(place, out),
+    let sources = Sources { part, heads, x, hidden: h, rows: z };
+    for (group, output) in part.output.iter().enumerate() {
+        let output = loads::<L>(output);
+        let mut first = 0;
+        while first < logits.len() {
+            first += if L::REGISTERS >= 32 && first + MANY <= logits.len() {
+                sources.add_up::<L, MANY>(group, output, first, logits)
+            } else if first + FEW <= logits.len() {
+                sources.add_up::<L, FEW>(group, output, first, logits)
+            } else {
+                sources.add_up::<L, 1>(group, output, first, logits)
             };
         }
     }
 }
 
-/// What 16 of the outputs are made of.
-struct Sources<'a, L> {
-    part: &'a Part,
-    heads: &'a Heads,
-    group: usize,
-    x: [L; 3],
-    hidden: &'a [Aligned],
-    rows: &'a [Aligned],
-}
-
-impl<L: Lanes> Sources<'_, L> {
-    /// `R` outputs from `place` on.
-    #[inline(always)]
-    fn add_up<const R: usize>(&self, place: usize, out: &mut [Aligned]) -> usize {
-        let (part, group, groups) = (self.part, self.group, self.heads.groups);
-        let mut sum = affines::<L, R>(&part.output[group], place, self.x);
-        for (weights, hidden) in part.through.chunks_exact(groups).zip(self.hidden) {
-            add(&mut sum, &weights[group], place, hidden);
+/// The neurons at `B` blocks of points.
+#[inline(always)]
+fn neurons<L: Lanes, const B: usize>(
+    part: &Part,
+    x: &[[Aligned; 3]],
+    first: usize,
+    hidden: &mut [Points],
+    rows: &mut [Points],
+) {
+    let mut points = [[L::splat(0.0); 3]; B];
+    for b in 0..B {
+        for k in 0..3 {
+            points[b][k] = L::load(&x[first + b][k].0);
         }
-        for (id, row) in part.rows.ids.iter().zip(self.rows) {
-            add(&mut sum, &self.heads.weights[*id as usize * groups + group], place, row);
+    }
+    for (planes, hidden) in part.columns.planes.iter().zip(hidden.chunks_mut(WIDTH)) {
+        for (j, hidden) in hidden.iter_mut().enumerate() {
+            for b in 0..B {
+                hidden[first + b] = Aligned(affine(planes, j, points[b]).max(L::splat(0.0)).store());
+            }
         }
-        for r in 0..R {
-            out[r] = Aligned(sum[r].store());
+    }
+    for (index, out) in rows.chunks_exact_mut(ROWS).enumerate() {
+        let (panel, place) = (index * ROWS / WIDTH, index * ROWS % WIDTH);
+        let mut sum = [[L::splat(0.0); B]; ROWS];
+        for r in 0..ROWS {
+            for b in 0..B {
+                sum[r][b] = affine(&part.rows.affine[panel], place + r, points[b]);
+            }
         }
-        R
+        for (weights, hidden) in part.rows.panel(panel).iter().zip(&*hidden) {
+            let weights = &weights.0[place..place + ROWS];
+            let mut inputs = [L::splat(0.0); B];
+            for b in 0..B {
+                inputs[b] = L::load(&hidden[first + b].0);
+            }
+            for r in 0..ROWS {
+                let weight = L::splat(weights[r]);
+                for b in 0..B {
+                    sum[r][b] = weight.mul_add(inputs[b], sum[r][b]);
+                }
+            }
+        }
+        for r in 0..ROWS {
+            for b in 0..B {
+                out[r][first + b] = Aligned(sum[r][b].max(L::splat(0.0)).store());
+            }
+        }
     }
 }
 
@@ -104,21 +130,49 @@ fn affine<L: Lanes>(maps: &[Aligned; 4], r: usize, x: [L; 3]) -> L {
     x[2].mul_add(L::splat(maps[2].0[r]), value)
 }
 
-/// The maps from `place` on.
-#[inline(always)]
-fn affines<L: Lanes, const R: usize>(maps: &[Aligned; 4], place: usize, x: [L; 3]) -> [L; R] {
-    let mut values = [L::splat(0.0); R];
-    for r in 0..R {
-        values[r] = affine(maps, place + r, x);
-    }
-    values
+/// What logits are made of.
+struct Sources<'a> {
+    part: &'a Part,
+    heads: &'a Heads,
+    x: &'a [[Aligned; 3]],
+    hidden: &'a [Points],
+    rows: &'a [Points],
 }
 
+impl Sources<'_> {
+    /// Outputs of one group at `P` points from `first` on, all of one block. Returns `P`.
+    #[inline(always)]
+    fn add_up<L: Lanes, const P: usize>(
+        &self,
+        group: usize,
+        output: [L; 4],
+        first: usize,
+        logits: &mut [&mut [f32]],
+    ) -> usize {
+        let (part, groups) = (self.part, self.heads.groups);
+        let (block, lane) = (first / WIDTH, first % WIDTH);
+        let mut sum = [output[3]; P];
+        for k in 0..3 {
+            add(&mut sum, output[k], &self.x[block][k], lane);
+        }
+        for (weights, hidden) in part.through.chunks_exact(groups).zip(self.hidden) {
+            add(&mut sum, L::load(&weights[group].0), &hidden[block], lane);
+        }
+        for (id, row) in part.rows.ids.iter().zip(self.rows) {
+            add(&mut sum, L::load(&self.heads.weights[*id as usize * groups + group].0), &row[block], lane);
+        }
+        for p in 0..P {
+            sum[p].store_first(&mut logits[first + p][WIDTH * group..]);
+        }
+        P
+    }
+}
+
+/// Adds `weights` times each of the numbers from `lane` on.
 #[inline(always)]
-fn add<L: Lanes, const R: usize>(sum: &mut [L; R], weights: &Aligned, place: usize, input: &Aligned) {
-    let weights = &weights.0[place..place + R];
-    let input = L::load(&input.0);
-    for r in 0..R {
-        sum[r] = L::splat(weights[r]).mul_add(input, sum[r]);
+fn add<L: Lanes, const P: usize>(sum: &mut [L; P], weights: L, numbers: &Aligned, lane: usize) {
+    let numbers = &numbers.0[lane..lane + P];
+    for p in 0..P {
+        sum[p] = weights.mul_add(L::splat(numbers[p]), sum[p]);
     }
 }

@@ -32,6 +32,7 @@ mod rows;
 mod whole;
 
 pub(super) use evaluate::write_logits;
+pub(super) use whole::Prepared;
 
 #[cfg(test)]
 mod tests;

@@ -1,5 +1,8 @@
 //! What is left of the network over a box.
 
+use std::ops::Range;
+
+use super::bounds::lanes_of;
 use super::columns::{sort, Columns, Sorted, Term};
 use super::rows::{bound, splats, Rows};
 use crate::simd::{multiversion, Aligned, Lanes, Simd, WIDTH};
@@ -20,7 +23,6 @@ pub(super) struct Part {
 
 /// `U`: for each row of layer 2 what it adds to all outputs, in lanes.
 pub(super) struct Heads {
-    pub outputs: usize,
     /// Registers that hold all outputs.
     pub groups: usize,
     pub weights: Vec<Aligned>,
@@ -54,10 +56,11 @@ impl Part {
         simd: Simd,
         heads: &Heads,
         parent: &Rows,
+        panels: Range<usize>,
         region: &Region,
         sorted: &Sorted,
     ) {
-        absorb(simd, heads, parent, region, sorted, self);
+        absorb(simd, heads, parent, panels, region, sorted, self);
     }
 }
 
@@ -109,6 +112,7 @@ multiversion! {
     fn absorb(
         heads: &Heads,
         parent: &Rows,
+        panels: Range<usize>,
         region: &Region,
         sorted: &Sorted,
         child: &mut Part,
@@ -116,9 +120,15 @@ multiversion! {
 }
 
 #[inline(always)]
-fn absorb_body<L: Lanes>(heads: &Heads, parent: &Rows, region: &Region, sorted: &Sorted, child: &mut Part) {
-    let panels = parent.panels();
-    let mut p = 0;
+fn absorb_body<L: Lanes>(
+    heads: &Heads,
+    parent: &Rows,
+    panels: Range<usize>,
+    region: &Region,
+    sorted: &Sorted,
+    child: &mut Part,
+) {
+    let (mut p, panels) = (panels.start, panels.end);
     // Several panels at a time, so that there are more sums than an addition takes cycles: as many as there are registers for.
     while L::REGISTERS >= 32 && p + 4 <= panels {
         absorb_panels::<L, 4>(heads, parent, p, region, sorted, child);
@@ -153,20 +163,14 @@ fn absorb_panels<L: Lanes, const P: usize>(
     for p in 0..P {
         let panel =
             Panel { matrix: matrix[p], affine: &bounded.affine[p], ids: &parent.ids[WIDTH * (first + p)..] };
-        let (mut on_lanes, mut open_lanes) = ([0u32; WIDTH], [0u32; WIDTH]);
-        let (mut on_count, mut open_count) = (0, 0);
-        for t in 0..WIDTH.min(panel.ids.len()) {
-            let (is_off, is_on) = (bounded.upper[p][t] <= 0.0, bounded.lower[p][t] >= 0.0);
-            on_lanes[on_count % WIDTH] = t as u32;
-            on_count += usize::from(is_on & !is_off);
-            open_lanes[open_count % WIDTH] = t as u32;
-            open_count += usize::from(!is_on & !is_off);
+        // The last panel may have lanes without rows.
+        let rows = u32::MAX >> (32 - WIDTH.min(panel.ids.len()));
+        let (on_rows, open_rows) = (bounded.on[p] & rows, bounded.open[p] & rows);
+        if on_rows != 0 {
+            fold::<L>(heads, &panel, on_rows, open, child);
         }
-        if on_count > 0 {
-            fold::<L>(heads, &panel, &on_lanes[..on_count], open, child);
-        }
-        if open_count > 0 {
-            keep::<L>(&panel, &open_lanes, open_count, open, &mut child.rows);
+        if open_rows != 0 {
+            keep::<L>(&panel, open_rows, open, &mut child.rows);
         }
     }
 }
@@ -179,12 +183,15 @@ struct Panel<'a> {
     ids: &'a [u32],
 }
 
-/// Appends the rows in `count` of the panel's lanes, and of their columns the open ones.
+/// Appends some of the panel's rows, and of their columns the open ones.
 #[inline(always)]
-fn keep<L: Lanes>(panel: &Panel<'_>, lanes: &[u32; WIDTH], count: usize, open: &[Term], rows: &mut Rows) {
+fn keep<L: Lanes>(panel: &Panel<'_>, which: u32, open: &[Term], rows: &mut Rows) {
     let place = rows.ids.len() % WIDTH;
-    for lane in &lanes[..count] {
-        rows.ids.push(panel.ids[*lane as usize]);
+    let (mut lanes, mut count) = ([0; WIDTH], 0);
+    for lane in lanes_of(which) {
+        rows.ids.push(panel.ids[lane]);
+        lanes[count % WIDTH] = lane as u32;
+        count += 1;
     }
     // First what fills up the last panel, then the rest in a new one.
     let filling = if place == 0 { 0 } else { count.min(WIDTH - place) };
@@ -224,15 +231,14 @@ fn keep<L: Lanes>(panel: &Panel<'_>, lanes: &[u32; WIDTH], count: usize, open: &
 /// Columns of `V` that rows are added to at a time.
 const COLUMNS: usize = 8;
 
-/// Makes the rows in some of the panel's lanes, which are on, part of the output.
+/// Makes some of the panel's rows, which are on, part of the output.
 #[inline(always)]
-fn fold<L: Lanes>(heads: &Heads, panel: &Panel<'_>, lanes: &[u32], open: &[Term], child: &mut Part) {
+fn fold<L: Lanes>(heads: &Heads, panel: &Panel<'_>, which: u32, open: &[Term], child: &mut Part) {
     let groups = heads.groups;
     for group in 0..groups {
         let mut weights = [L::splat(0.0); WIDTH];
         let mut sum = [L::splat(0.0); 4];
-        for (weights, &lane) in weights.iter_mut().zip(lanes) {
-            let lane = lane as usize % WIDTH;
+        for (weights, lane) in weights.iter_mut().zip(lanes_of(which)) {
             *weights = L::load(&heads.weights[panel.ids[lane] as usize * groups + group].0);
             for k in 0..4 {
                 sum[k] = L::splat(panel.affine[k].0[lane]).mul_add(*weights, sum[k]);
@@ -248,9 +254,9 @@ fn fold<L: Lanes>(heads: &Heads, panel: &Panel<'_>, lanes: &[u32], open: &[Term]
                 *column = &panel.matrix[open[(first + c).min(open.len() - 1)].column as usize];
             }
             let mut sum = [L::splat(0.0); COLUMNS];
-            for (weights, &lane) in weights.iter().zip(lanes) {
+            for (weights, lane) in weights.iter().zip(lanes_of(which)) {
                 for c in 0..COLUMNS {
-                    let factor = L::splat(columns[c].0[lane as usize % WIDTH]);
+                    let factor = L::splat(columns[c].0[lane]);
                     sum[c] = factor.mul_add(*weights, sum[c]);
                 }
             }

@@ -1,8 +1,9 @@
 //! Layer 2 over a box: its rows' affine parts, and bounds on what they can be.
 
-use super::bounds::bounds;
+use super::bounds::{bounds, classify};
 use super::columns::Term;
-use crate::simd::{Aligned, Lanes, WIDTH};
+use crate::memory::filled;
+use crate::simd::{Aligned, Lanes};
 use crate::tree::Region;
 
 /// Rows of layer 2, in panels of 16.
@@ -25,8 +26,18 @@ impl Rows {
         self.columns = columns;
         self.ids.clear();
         self.affine.clear();
-        // Room, which costs nothing until it is used, so that nothing is ever moved.
-        self.matrix.reserve_exact((columns * panels).saturating_sub(self.matrix.len()));
+        // Room, which costs nothing until it is used, so that nothing is ever moved; more than is needed, so that the next node
+        // finds it too.
+        let room = (columns * panels).next_power_of_two();
+        if self.matrix.capacity() < room {
+            self.matrix = Vec::with_capacity(room);
+        }
+    }
+
+    /// Has the weights of each panel, whose affine parts are there, written by `write(panel, weights)`.
+    pub(super) fn fill_panels(&mut self, write: impl Fn(usize, &mut [Aligned]) + Sync + Send) {
+        let (memory, columns) = (std::mem::take(&mut self.matrix), self.columns);
+        self.matrix = filled(memory, columns * self.panels(), Aligned::ZERO, columns, write);
     }
 
     pub(super) fn panels(&self) -> usize {
@@ -60,8 +71,9 @@ impl Rows {
 pub(super) struct Bounded<const P: usize> {
     /// The affine parts of their rows, with the columns that are on.
     pub affine: [[Aligned; 4]; P],
-    pub lower: [[f32; WIDTH]; P],
-    pub upper: [[f32; WIDTH]; P],
+    /// Which of their rows are on, and which open.
+    pub on: [u32; P],
+    pub open: [u32; P],
 }
 
 /// Folds the columns that are on into the affine parts of `P` panels, and bounds their rows over the box.
@@ -86,8 +98,7 @@ pub(super) fn bound<L: Lanes, const P: usize>(
             }
         }
     }
-    let mut result =
-        Bounded { affine: [[Aligned::ZERO; 4]; P], lower: [[0.0; WIDTH]; P], upper: [[0.0; WIDTH]; P] };
+    let mut result = Bounded { affine: [[Aligned::ZERO; 4]; P], on: [0; P], open: [0; P] };
     for p in 0..P {
         for k in 0..4 {
             result.affine[p][k] = Aligned(maps[p][k].store());
@@ -107,7 +118,7 @@ pub(super) fn bound<L: Lanes, const P: usize>(
     }
     for p in 0..P {
         let (lower, upper) = bounds(maps[p], spreads[p], region);
-        (result.lower[p], result.upper[p]) = (lower.store(), upper.store());
+        [result.on[p], result.open[p]] = classify(lower, upper);
     }
     result
 }

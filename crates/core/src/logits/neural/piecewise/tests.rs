@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::frame::Frame;
 use crate::logits::neural::initialise::Random;
 use crate::logits::neural::network::tests::naive;
-use crate::logits::neural::{fit, Network, Schedule, Training};
+use crate::logits::neural::{fit, train, Network, Schedule, Training};
 use crate::simd::Simd;
 use crate::tree::{Order, PointTree};
 
@@ -84,6 +84,14 @@ fn agrees_with_the_naive_version_for_any_width_and_any_number_of_outputs() {
         let network = untrained(3, width, m);
         check(&network, &x, &logits(&network, &x));
     }
+}
+
+#[test]
+fn a_network_that_was_evaluated_and_then_trained_is_evaluated_as_it_is_now() {
+    let (network, x, p) = (trained(3, 200, 5), uniform(500, 3, 1), uniform(5, 3, 9));
+    check(&network, &x, &logits(&network, &x));
+    let network = train(network, &p, Schedule::Fixed(20), 3e-3, &mut |_| true).unwrap().network;
+    check(&network, &x, &logits(&network, &x));
 }
 
 #[test]
@@ -171,7 +179,7 @@ fn logits_in_the_order_of_the_tree_are_the_same_ones() {
     let mut ordered = vec![f32::NAN; 3000 * 6];
     network.write_logits_of_tree(&tree, Order::Tree, &mut ordered, &mut |_| true).unwrap();
     for (row, index) in ordered.chunks(6).zip(tree.order()) {
-        assert_eq!(row, &given[6 * *index as usize..][..6]);
+        assert_eq!(row, &given[6 * index..][..6]);
     }
 }
 

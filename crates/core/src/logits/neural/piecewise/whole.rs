@@ -1,19 +1,59 @@
 //! The whole network, laid out as a node that has everything open.
 
+use std::ops::Range;
+use std::sync::OnceLock;
+
 use super::columns::Columns;
 use super::node::{Heads, Part};
 use super::rows::Rows;
 use crate::logits::neural::network::Network;
 use crate::simd::{Aligned, WIDTH};
 
-/// Rows of layer 2 that are laid out at a time: so few that they stay in the cache.
-pub(super) const PACK: usize = 4 * WIDTH;
+/// Panels of layer 2 that are gone through at a time: so few that they stay in the cache.
+pub(super) const PACK: usize = 4;
+/// Bytes of layer 2 up to which it is laid out once for all evaluations.
+const MOST_KEPT: usize = 16 << 20;
 
 /// A network without Fourier features.
 pub(super) struct Whole {
-    /// Layer 1 and the biases of the output; its rows are [packed](Whole::pack) as they are needed.
+    /// Layer 1 and the biases of the output; of layer 2 all rows if it is small, else they are [packed](Whole::panels) as they are
+    /// needed.
     pub part: Part,
     pub heads: Heads,
+}
+
+/// What the first evaluation of a network lays out for all later ones. It is no part of what the network is.
+#[derive(Default)]
+pub(in crate::logits::neural) struct Prepared(OnceLock<Whole>);
+
+impl Prepared {
+    pub(super) fn of(network: &Network) -> &Whole {
+        let prepared = &network.prepared.0;
+        if let Some(whole) = prepared.get() {
+            return whole;
+        }
+        // Made outside of the lock: while this thread waits for others, it may take up another evaluation of the same network.
+        let whole = Whole::new(network);
+        prepared.get_or_init(|| whole)
+    }
+}
+
+impl Clone for Prepared {
+    fn clone(&self) -> Prepared {
+        Prepared::default()
+    }
+}
+
+impl PartialEq for Prepared {
+    fn eq(&self, _: &Prepared) -> bool {
+        true
+    }
+}
+
+impl std::fmt::Debug for Prepared {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Prepared")
+    }
 }
 
 impl Whole {
@@ -43,7 +83,13 @@ impl Whole {
             }
         }
         let part = Part { columns, output, ..Part::default() };
-        Whole { part, heads: Heads { outputs, groups, weights } }
+        let mut whole = Whole { part, heads: Heads { groups, weights } };
+        if size_of_val(&layer2.weight[..]) <= MOST_KEPT {
+            let mut packed = Rows::default();
+            pack(network, 0, rows.div_ceil(WIDTH), &mut packed);
+            whole.part.rows = packed;
+        }
+        whole
     }
 
     /// Rows of layer 2.
@@ -51,21 +97,39 @@ impl Whole {
         self.heads.weights.len() / self.heads.groups
     }
 
-    /// Lays out rows of layer 2 from `first` on, as many as there are, or as `rows` is to hold.
-    pub(super) fn pack(&self, network: &Network, first: usize, rows: &mut Rows) {
-        let layer = &network.layers()[1];
-        let columns = layer.inputs();
-        let last = (first + PACK).min(self.rows());
-        rows.clear(columns, PACK / WIDTH);
-        rows.ids.extend(first as u32..last as u32);
-        let weight = layer.weight[first * columns..last * columns].chunks(WIDTH * columns);
-        for (weight, bias) in weight.zip(layer.bias[first..last].chunks(WIDTH)) {
-            let mut affine = [Aligned::ZERO; 4];
-            affine[3].0[..bias.len()].copy_from_slice(bias);
-            rows.push(affine);
-            transpose(weight, columns, rows.last_panel());
+    /// Rows of layer 2 from panel `first` on, [`PACK`] panels of them or what is left: laid out already, or now, in `scratch`.
+    pub(super) fn panels<'a>(
+        &'a self,
+        network: &Network,
+        first: usize,
+        scratch: &'a mut Rows,
+    ) -> (&'a Rows, Range<usize>) {
+        let count = PACK.min(self.rows().div_ceil(WIDTH) - first);
+        if self.part.rows.panels() > 0 {
+            return (&self.part.rows, first..first + count);
         }
+        pack(network, first, count, scratch);
+        (scratch, 0..count)
     }
+}
+
+/// Lays out `count` panels of layer 2 from panel `first` on.
+fn pack(network: &Network, first: usize, count: usize, rows: &mut Rows) {
+    let layer = &network.layers()[1];
+    let (columns, first) = (layer.inputs(), WIDTH * first);
+    let last = (first + WIDTH * count).min(layer.outputs());
+    rows.clear(columns, 0);
+    rows.ids.extend(first as u32..last as u32);
+    for bias in layer.bias[first..last].chunks(WIDTH) {
+        let mut affine = [Aligned::ZERO; 4];
+        affine[3].0[..bias.len()].copy_from_slice(bias);
+        rows.affine.push(affine);
+    }
+    let weight = &layer.weight[first * columns..last * columns];
+    rows.fill_panels(|panel, to| {
+        let start = WIDTH * columns * panel;
+        transpose(&weight[start..weight.len().min(start + WIDTH * columns)], columns, to);
+    });
 }
 
 /// At most 16 rows of `weight`, column by column.
@@ -73,8 +137,11 @@ fn transpose(weight: &[f32], columns: usize, panel: &mut [Aligned]) {
     for (chunk, panel) in panel.chunks_mut(WIDTH).enumerate() {
         let mut tile = [Aligned::ZERO; WIDTH];
         for (tile, row) in tile.iter_mut().zip(weight.chunks_exact(columns)) {
-            let row = &row[chunk * WIDTH..][..panel.len()];
-            tile.0[..row.len()].copy_from_slice(row);
+            let row = &row[chunk * WIDTH..];
+            match row.first_chunk() {
+                Some(row) => tile.0 = *row,
+                None => tile.0[..row.len()].copy_from_slice(row),
+            }
         }
         for (j, column) in panel.iter_mut().enumerate() {
             for t in 0..WIDTH {

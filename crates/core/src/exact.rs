@@ -1,0 +1,182 @@
+//! Handles that arrive: effective targets that take each control point all the way to its target.
+//!
+//! MLS approximates: the deformation `f(.; q)` takes the control point `p_i` near its target `q_i`, not onto it. Since the weights do not depend
+//! on the targets, one may aim elsewhere: [`ExactHandles::aim`] solves
+//!
+//! ```text
+//! f(p_i; q') = q_i   for all i
+//! ```
+//!
+//! by `q' <- q' + (q - f(p; q'))`, with Anderson's acceleration (Anderson 1965; Walker, Ni 2011). The unknowns are the targets alone, so
+//! it costs a few frames of as many points as there are control points.
+
+use crate::deformer::Deformer;
+use crate::error::Error;
+use crate::mls::Transform;
+
+/// Differences that the acceleration looks back on.
+const HISTORY: usize = 6;
+/// Evaluations at most.
+const MOST: usize = 100;
+/// A handle has arrived when it misses by less than this part of the targets' extent.
+const ARRIVED: f64 = 1e-11;
+/// Halvings of a step that does not help, until no shorter one is tried.
+const HALVINGS: i32 = 8;
+
+/// The control points as points that are deformed themselves.
+pub struct ExactHandles {
+    handles: Deformer,
+    dim: usize,
+    p: Vec<f64>,
+}
+
+/// Where to aim.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Aim {
+    /// The effective targets `q'`, m x dim: what to give to [`Deformer::deform`] in the place of `q`.
+    pub targets: Vec<f64>,
+    /// How far each control point stays from where it was to go, m.
+    pub misses: Vec<f64>,
+}
+
+impl ExactHandles {
+    /// For the control points `p` (m x dim), `logits` (m x m) being what the weight function says of each.
+    ///
+    /// # Errors
+    /// As [`Deformer::new`].
+    pub fn new(p: &[f64], dim: usize, logits: Vec<f32>, transform: Transform) -> Result<ExactHandles, Error> {
+        let handles = Deformer::new(p.to_vec(), dim, p, logits, transform)?;
+        Ok(ExactHandles { handles, dim, p: p.to_vec() })
+    }
+
+    /// The effective targets for the targets `q` (m x dim), at `temperature` > 0.
+    ///
+    /// With `adherence` 1 the control points go to their targets; with 0 to where MLS takes them, and the effective targets are the
+    /// targets; between, to that part of the way from the one to the other. Where that cannot be reached, the nearest that was found.
+    ///
+    /// # Errors
+    /// As [`Deformer::deform`]; where the adherence is not from 0 to 1.
+    pub fn aim(&self, q: &[f64], temperature: f64, adherence: f64) -> Result<Aim, Error> {
+        if !(0.0..=1.0).contains(&adherence) {
+            return Err(Error::argument("adherence", format!("expected 0 to 1, found {adherence}")));
+        }
+        let arrive = |targets: &[f64]| -> Result<Vec<f64>, Error> {
+            Ok(self.handles.deform(targets, temperature, false, &mut |_| true)?.positions)
+        };
+        let soft = arrive(q)?;
+        let goal: Vec<f64> = soft.iter().zip(q).map(|(soft, q)| soft + adherence * (q - soft)).collect();
+        let rest = |arrived: Vec<f64>| -> Vec<f64> { goal.iter().zip(arrived).map(|(g, a)| g - a).collect() };
+        let enough = ARRIVED * self.extent(q);
+
+        let mut now = Guess { rest: rest(soft), targets: q.to_vec() };
+        let mut best = now.clone();
+        let mut history = History::default();
+        let mut halvings = 0;
+        for _ in 0..MOST {
+            if best.worst() <= enough || halvings > HALVINGS {
+                break;
+            }
+            let step = history.step(&now.rest);
+            let step = step.iter().map(|s| s * 0.5f64.powi(halvings));
+            let targets: Vec<f64> = now.targets.iter().zip(step).map(|(t, s)| t + s).collect();
+            let next = Guess { rest: rest(arrive(&targets)?), targets };
+            if next.square() < best.square() {
+                halvings = 0;
+                history.push(&now, &next);
+                best = next.clone();
+                now = next;
+            } else {
+                // What was learned leads astray: from the best again, by a plain and shorter step.
+                halvings += 1;
+                history = History::default();
+                now = best.clone();
+            }
+        }
+        let misses =
+            best.rest.chunks_exact(self.dim).map(|r| r.iter().map(|v| v * v).sum::<f64>().sqrt()).collect();
+        Ok(Aim { targets: best.targets, misses })
+    }
+
+    /// The longest side of the box around the control points and the targets.
+    fn extent(&self, q: &[f64]) -> f64 {
+        let side = |axis: usize| {
+            let values = || self.p.iter().chain(q).skip(axis).step_by(self.dim);
+            let (low, high) =
+                (values().copied().fold(f64::MAX, f64::min), values().copied().fold(f64::MIN, f64::max));
+            high - low
+        };
+        (0..self.dim).map(side).fold(0.0, f64::max)
+    }
+}
+
+/// Targets that were tried, and what they leave.
+#[derive(Clone)]
+struct Guess {
+    targets: Vec<f64>,
+    rest: Vec<f64>,
+}
+
+impl Guess {
+    fn worst(&self) -> f64 {
+        self.rest.iter().fold(0.0, |worst, r| r.abs().max(worst))
+    }
+
+    fn square(&self) -> f64 {
+        self.rest.iter().map(|r| r * r).sum()
+    }
+}
+
+/// The last differences of targets and rests.
+#[derive(Default)]
+struct History {
+    targets: Vec<Vec<f64>>,
+    rests: Vec<Vec<f64>>,
+}
+
+impl History {
+    fn push(&mut self, before: &Guess, after: &Guess) {
+        let difference = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect();
+        if self.rests.len() == HISTORY {
+            self.targets.remove(0);
+            self.rests.remove(0);
+        }
+        self.targets.push(difference(&after.targets, &before.targets));
+        self.rests.push(difference(&after.rest, &before.rest));
+    }
+
+    /// The step to take: the rest, less what the differences explain of it, which they know a better step for.
+    ///
+    /// `rest - (dT + dR) gamma`, `gamma` minimising `|rest - dR gamma|`.
+    fn step(&self, rest: &[f64]) -> Vec<f64> {
+        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let mut step = rest.to_vec();
+        // Gram and Schmidt on the differences, the newest first, each with what it does to the targets.
+        let mut basis: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+        for (target, rest_difference) in self.targets.iter().zip(&self.rests).rev() {
+            let (mut t, mut r) = (target.clone(), rest_difference.clone());
+            let length = dot(&r, &r);
+            for (bt, br) in &basis {
+                let along = dot(&r, br);
+                r.iter_mut().zip(br).for_each(|(r, b)| *r -= along * b);
+                t.iter_mut().zip(bt).for_each(|(t, b)| *t -= along * b);
+            }
+            let left = dot(&r, &r);
+            if left <= 1e-20 * length || left == 0.0 {
+                continue; // says nothing new
+            }
+            let scale = left.sqrt().recip();
+            r.iter_mut().chain(&mut t).for_each(|v| *v *= scale);
+            basis.push((t, r));
+        }
+        for (t, r) in &basis {
+            let along = dot(rest, r);
+            for ((step, t), r) in step.iter_mut().zip(t).zip(r) {
+                *step -= along * (t + r);
+            }
+        }
+        step
+    }
+}
+
+#[cfg(test)]
+mod tests;

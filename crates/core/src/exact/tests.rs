@@ -1,0 +1,152 @@
+//! Handles arrive, and where they cannot, they say so; the laws of MLS still hold.
+
+use super::*;
+use proptest::prelude::*;
+
+const ALL: [Transform; 3] = [Transform::Rigid, Transform::Similarity, Transform::Affine];
+
+/// Logits that leave each of the `p` about `own` of the weight at its own place, the rest shared by distance.
+fn logits(p: &[f64], dim: usize, own: f64) -> Vec<f32> {
+    let m = p.len() / dim;
+    let mut logits = Vec::new();
+    for i in 0..m {
+        let others: Vec<f64> = (0..m)
+            .map(|k| (0..dim).map(|c| (p[i * dim + c] - p[k * dim + c]).powi(2)).sum::<f64>())
+            .map(|square| if square == 0.0 { 0.0 } else { 1.0 / square })
+            .collect();
+        let sum: f64 = others.iter().sum();
+        logits.extend((0..m).map(|k| (if k == i { own } else { (1.0 - own) * others[k] / sum }).ln() as f32));
+    }
+    logits
+}
+
+fn handles(p: &[f64], dim: usize, own: f64, transform: Transform) -> ExactHandles {
+    ExactHandles::new(p, dim, logits(p, dim, own), transform).unwrap()
+}
+
+fn arrived(handles: &ExactHandles, targets: &[f64]) -> Vec<f64> {
+    handles.handles.deform(targets, 1.0, false, &mut |_| true).unwrap().positions
+}
+
+fn furthest(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |worst, (a, b)| worst.max((a - b).abs()))
+}
+
+/// Points in general position, the same every time.
+fn points(m: usize, dim: usize) -> Vec<f64> {
+    (0..m * dim)
+        .map(|at| (at as f64 * 12.9898 + 4.1).sin() * 43758.5453)
+        .map(|v| 2.0 * (v - v.floor()) - 1.0)
+        .collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+    #[test]
+    fn handles_arrive(m in 2usize..13, dim in 1usize..4, own in 0.6f64..0.99, seed in 0.0f64..10.0) {
+        let p = points(m, dim);
+        let q: Vec<f64> = p.iter().enumerate().map(|(at, p)| p + 0.1 * (at as f64 * 1.7 + seed).sin()).collect();
+        for transform in ALL {
+            let handles = handles(&p, dim, own, transform);
+            let aim = handles.aim(&q, 1.0, 1.0).unwrap();
+            let found = furthest(&arrived(&handles, &aim.targets), &q);
+            prop_assert!(found < 1e-8, "{transform:?} {found}");
+            prop_assert!(aim.misses.iter().all(|miss| *miss < 1e-8));
+        }
+    }
+}
+
+#[test]
+fn unmoved_and_rigidly_moved_control_points_are_their_own_aim() {
+    let p = points(6, 3);
+    // A quarter turn around z, and a shift.
+    let moved: Vec<f64> = p.chunks_exact(3).flat_map(|p| [-p[1] + 2.0, p[0], p[2] - 1.0]).collect();
+    for transform in ALL {
+        let handles = handles(&p, 3, 0.7, transform);
+        assert_eq!(handles.aim(&p, 1.0, 1.0).unwrap().targets, p);
+        let aim = handles.aim(&moved, 1.0, 1.0).unwrap();
+        assert!(furthest(&aim.targets, &moved) < 1e-9, "{transform:?}");
+    }
+}
+
+#[test]
+fn adherence_goes_from_where_mls_leaves_the_handles_to_their_targets() {
+    let p = points(8, 3);
+    let q: Vec<f64> = p.iter().enumerate().map(|(at, p)| p + 0.2 * (at as f64).cos()).collect();
+    let handles = handles(&p, 3, 0.7, Transform::Rigid);
+    let soft = arrived(&handles, &q);
+    assert_eq!(handles.aim(&q, 1.0, 0.0).unwrap().targets, q);
+    for adherence in [0.25, 0.5, 0.9] {
+        let aim = handles.aim(&q, 1.0, adherence).unwrap();
+        let expected: Vec<f64> = soft.iter().zip(&q).map(|(s, q)| s + adherence * (q - s)).collect();
+        assert!(furthest(&arrived(&handles, &aim.targets), &expected) < 1e-8);
+    }
+    for adherence in [-0.1, 1.1, f64::NAN] {
+        assert!(handles.aim(&q, 1.0, adherence).is_err());
+    }
+}
+
+#[test]
+fn a_drag_has_no_jumps() {
+    let p = points(8, 3);
+    let handles = handles(&p, 3, 0.6, Transform::Rigid);
+    let mut last: Option<Vec<f64>> = None;
+    for step in 0..400 {
+        let mut q = p.clone();
+        q[0] += 0.005 * f64::from(step);
+        q[4] -= 0.003 * f64::from(step);
+        let aim = handles.aim(&q, 1.0, 1.0).unwrap().targets;
+        if let Some(last) = last {
+            assert!(furthest(&aim, &last) < 0.05, "step {step}: {}", furthest(&aim, &last));
+        }
+        last = Some(aim);
+    }
+}
+
+#[test]
+fn what_cannot_be_reached_is_told_and_stays_finite() {
+    // Two control points with the same weights everywhere are to go to different places.
+    let p = points(5, 3);
+    let mut logits = logits(&p, 3, 0.8);
+    for i in 0..5 {
+        let shared = logits[i * 5];
+        logits[i * 5 + 1] = shared;
+    }
+    let first: Vec<f32> = logits[0..5].to_vec();
+    logits[5..10].copy_from_slice(&first);
+    let mut q = p.clone();
+    q[0] += 0.5;
+    q[3] -= 0.5;
+    for transform in ALL {
+        let handles = ExactHandles::new(&p, 3, logits.clone(), transform).unwrap();
+        let aim = handles.aim(&q, 1.0, 1.0).unwrap();
+        assert!(
+            aim.targets.iter().all(|t| t.is_finite() && t.abs() < 100.0),
+            "{transform:?} {:?}",
+            aim.targets
+        );
+        let soft: f64 = arrived(&handles, &q).iter().zip(&q).map(|(a, b)| (a - b).powi(2)).sum();
+        let left: f64 = aim.misses.iter().map(|miss| miss * miss).sum();
+        assert!(left <= soft, "{transform:?}: {left} {soft}");
+        // Only a rigid map cannot stretch the way between the two.
+        assert!(transform != Transform::Rigid || aim.misses[0] > 0.1, "{:?}", aim.misses);
+    }
+}
+
+#[test]
+fn the_order_of_the_control_points_does_not_matter() {
+    let (p, own) = (points(6, 3), 0.7);
+    let q: Vec<f64> = p.iter().map(|v| v + 0.2 * (9.0 * v).sin()).collect();
+    let turned = |v: &[f64]| [&v[6..], &v[..6]].concat();
+    let here = handles(&p, 3, own, Transform::Rigid).aim(&q, 1.0, 1.0).unwrap();
+    let there = handles(&turned(&p), 3, own, Transform::Rigid).aim(&turned(&q), 1.0, 1.0).unwrap();
+    assert!(furthest(&turned(&here.targets), &there.targets) < 1e-8);
+}
+
+#[test]
+fn one_control_point_goes_where_it_is_to_go() {
+    let handles = handles(&[1.0, 2.0, 3.0], 3, 1.0, Transform::Rigid);
+    let aim = handles.aim(&[4.0, 2.0, 3.5], 1.0, 1.0).unwrap();
+    assert_eq!(aim.targets, [4.0, 2.0, 3.5]);
+    assert_eq!(aim.misses, [0.0]);
+}

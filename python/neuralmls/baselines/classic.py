@@ -1,0 +1,56 @@
+"""Classic moving least squares (Schaefer, McPhail, Warren 2006; Zhu, Gortler 2007): the paper's first rival."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from neuralmls.deformer import Deformer
+from neuralmls.protocol import Transform
+from neuralmls.shape import Shape
+from neuralmls.weights import InverseDistanceWeights
+
+
+def classic(
+    shape: Shape,
+    p: ArrayLike,
+    q: ArrayLike,
+    *,
+    alpha: float = 1.0,
+    temperature: float = 1.0,
+    transform: Transform = "rigid",
+) -> NDArray[np.float64]:
+    """Return the vertices deformed by `y = M (x - p*) + q*` with the weights `1 / d^(2 alpha)`.
+
+    Parameters
+    ----------
+    shape : Shape
+        Any shape, of any dimension.
+    p, q : (m, d)
+        Control points at rest and moved, in the coordinates of the file.
+    alpha : float > 0
+        Exponent of the *squared* distance: 0.5 is 1/d.
+    temperature : float > 0
+    transform : "rigid", "similarity" or "affine"
+
+    Returns
+    -------
+    (n, d) float64
+
+    Raises
+    ------
+    ArgumentError
+        An argument is out of its range, or does not fit another.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib, neuralmls as nm
+    >>> path = pathlib.Path(tempfile.mkdtemp(), "two.xyz")
+    >>> _ = path.write_text("0 0 0\\n1 0 0\\n")
+    >>> classic(nm.read(path), [[0, 0, 0], [1, 0, 0]], [[0, 0, 0], [1, 1, 0]]).tolist()
+    [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0]]
+    """
+    y: NDArray[np.float64] = Deformer(
+        shape.positions, InverseDistanceWeights(p, alpha=alpha), transform=transform
+    ).deform(q, temperature)  # type: ignore[assignment]  # float64, as the positions are
+    return y

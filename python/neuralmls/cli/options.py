@@ -1,0 +1,56 @@
+"""Options that several commands have."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from neuralmls.errors import ArgumentError
+
+PATH = click.Path(path_type=Path)
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+Decorator = Callable[[Function], Function]
+
+force = click.option("--force", is_flag=True, help="Overwrite files that are there.")
+json = click.option("--json", is_flag=True, help="As JSON, for machines.")
+quiet = click.option("--quiet", "-q", is_flag=True, help="Say nothing, show no progress bar.")
+shape = click.argument("shape", type=PATH)
+
+
+def output(help: str) -> Decorator[Any]:
+    """Return the option that names the file or folder to write."""
+    return click.option("--output", "-o", type=PATH, required=True, help=help)
+
+
+def points(help: str) -> Decorator[Any]:
+    """Return the option that names the file of control points, which the command cannot do without."""
+    return click.option("--points", type=PATH, required=True, help=help)
+
+
+def names(text: str, known: Iterable[str]) -> list[str]:
+    """Return the names of `--methods NAME,...`.
+
+    Raises
+    ------
+    ArgumentError
+        One is none of the known ones.
+    """
+    found, expected = text.split(","), list(known)
+    for name in found:
+        if name not in expected:
+            raise ArgumentError(f"--methods: expected names out of {', '.join(expected)}, found '{name}'")
+    return found
+
+
+def temperature(function: Function) -> Function:
+    """Add the temperature."""
+    return click.option(
+        "--temperature",
+        type=float,
+        default=1.0,
+        help="Of the softmax: below 1 parts move more apart, above 1 more together.",
+    )(function)

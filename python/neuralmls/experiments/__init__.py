@@ -1,0 +1,1 @@
+"""What the paper measured, as code: methods side by side on a shape, and against true poses."""

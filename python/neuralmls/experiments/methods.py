@@ -1,0 +1,131 @@
+"""The methods that experiments compare, each under one name and with one way to call it.
+
+>>> list(METHODS)
+['neural', 'classic', 'rbf', 'arap', 'biharmonic']
+>>> square = Surface(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]]))
+>>> METHODS["classic"](square, square.positions, square.positions + 1).tolist()[0]
+[1.0, 1.0, 1.0]
+
+A new method is one more entry of `METHODS`.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from neuralmls import baselines
+from neuralmls.deformer import Deformer
+from neuralmls.protocol import Transform
+from neuralmls.weights import NeuralWeights
+
+Array: TypeAlias = NDArray[np.float64]
+SpaceMap: TypeAlias = Callable[[Array], Array]
+
+
+class Geometry(Protocol):
+    """What a method looks at of a shape: a `Shape`, or a `Surface` that was never in a file."""
+
+    @property
+    def positions(self) -> Array:
+        """(n, d)."""
+
+    @property
+    def faces(self) -> NDArray[Any] | None:
+        """(f, 3) integers; None for a point cloud."""
+
+
+@dataclass(frozen=True)
+class Surface:
+    """Positions (n, d) and faces (f, 3) that were never in a file."""
+
+    positions: Array
+    faces: NDArray[Any] | None
+
+
+@dataclass(frozen=True)
+class Method:
+    """One way to deform a shape by control points; call it with `(shape, p, q)`.
+
+    Attributes
+    ----------
+    title : str
+        What tables and figures call it.
+    positions : callable, (shape, p (m, d), q (m, d)) -> (n, d)
+        The vertices deformed. Raises `NotApplicable` where the method cannot do the shape, in a sentence.
+    space : callable, (shape, p, q) -> (callable, (k, d) -> (k, d)), or None
+        The map of all of space whose values at the vertices `positions` are; None where there is none.
+    """
+
+    title: str
+    positions: Callable[[Geometry, ArrayLike, ArrayLike], Array]
+    space: Callable[[Geometry, ArrayLike, ArrayLike], SpaceMap] | None = None
+
+    def __call__(self, shape: Geometry, p: ArrayLike, q: ArrayLike) -> Array:
+        """Return the vertices deformed, (n, d) float64, in the coordinates of the shape."""
+        return self.positions(shape, p, q)
+
+
+def neural(
+    title: str = "NeuralMLS", *, transform: Transform = "rigid", temperature: float = 1.0, **training: Any
+) -> Method:
+    """The paper's weights, with the options of `Deformer` and of `NeuralWeights.fit` (steps, width, seed, ...)."""
+
+    def space(shape: Geometry, p: ArrayLike, q: ArrayLike) -> SpaceMap:
+        bounds = np.stack([shape.positions.min(axis=0), shape.positions.max(axis=0)])
+        weights = NeuralWeights.fit(p, bounds=bounds, **training)
+
+        def deformed(x: Array) -> Array:
+            return np.asarray(Deformer(x, weights, transform=transform).deform(q, temperature), dtype=np.float64)
+
+        return deformed
+
+    return Method(title, lambda shape, p, q: space(shape, p, q)(shape.positions), space)
+
+
+def classic(title: str = baselines.TITLES["classic"], **options: Any) -> Method:
+    """Inverse-distance weights with the options of `baselines.classic`; 1/d, as in the paper, unless told otherwise."""
+    return _of_space(title, "classic", **{"alpha": 0.5, **options})
+
+
+def kpd(path: str | os.PathLike[str], title: str = baselines.TITLES["kpd"]) -> Method:
+    """KeypointDeformer with a network for the shape's category, from a `.safetensors` file.
+
+    Raises
+    ------
+    FileError
+        The file cannot be used.
+    NeuralMLSError
+        SciPy or safetensors is not installed.
+    """
+    from neuralmls.baselines.kpd import KeypointDeformer
+
+    return _of_vertices(title, "kpd", network=KeypointDeformer.read(path))
+
+
+def _of_vertices(title: str, name: str, **options: Any) -> Method:
+    """A baseline that looks at the shape as a whole."""
+    return Method(title, lambda shape, p, q: baselines.get(name)(shape, p, q, **options))
+
+
+def _of_space(title: str, name: str, **options: Any) -> Method:
+    """A baseline that moves each point by where it is, whatever the shape."""
+
+    def space(_: Geometry, p: ArrayLike, q: ArrayLike) -> SpaceMap:
+        return lambda x: baselines.get(name)(Surface(x, None), p, q, **options)
+
+    return Method(title, lambda shape, p, q: space(shape, p, q)(shape.positions), space)
+
+
+METHODS: dict[str, Method] = {
+    "neural": neural(),
+    "classic": classic(),
+    "rbf": _of_space(baselines.TITLES["rbf"], "rbf"),
+    "arap": _of_vertices(baselines.TITLES["arap"], "arap"),
+    "biharmonic": _of_vertices(baselines.TITLES["biharmonic"], "biharmonic"),
+}
