@@ -9,7 +9,7 @@ WASM_BINDGEN := $(TARGET)/tools/bin/wasm-bindgen
 # The property tests' random numbers: the same every time, so that what passes here passes elsewhere.
 export PROPTEST_RNG_SEED ?= 1
 
-.PHONY: demo test bench rust python fuzz wasm editor editor-test tools node clean
+.PHONY: demo test bench rust python fuzz wasm wasm-target editor editor-test tools node clean
 
 demo: .venv/figures.stamp
 	$(BIN)/neuralmls demo -o out --force
@@ -30,12 +30,14 @@ rust: tools
 	NEURALMLS_SIMD=portable cargo test --locked -p neuralmls-core
 
 # The browser editor's crates: they must compile without threads for WebAssembly.
-wasm: tools
-	@rustup target list --installed 2>/dev/null | grep -q wasm32-unknown-unknown || rustup target add wasm32-unknown-unknown
+wasm: wasm-target
 	cargo clippy --locked -p neuralmls-core -p neuralmls-shapes -p neuralmls-wasm --no-default-features --target wasm32-unknown-unknown -- -D warnings
 
+wasm-target: tools
+	@rustup target list --installed 2>/dev/null | grep -q wasm32-unknown-unknown || rustup target add wasm32-unknown-unknown
+
 # Builds the browser editor into the package, from where `neuralmls edit` serves it and wheels take it.
-editor: wasm node .venv/figures.stamp
+editor: wasm-target node .venv/figures.stamp
 	RUSTFLAGS="-C target-feature=+simd128" cargo build --release --locked -p neuralmls-wasm --target wasm32-unknown-unknown
 	@version=$$(cargo pkgid wasm-bindgen | sed 's/.*[@#]//'); \
 	$(WASM_BINDGEN) --version 2>/dev/null | grep -qF "$$version" || { \
