@@ -82,7 +82,7 @@ tools:
 	@command -v cargo >/dev/null || { echo "Rust is missing: install it from https://rustup.rs" >&2; exit 1; }
 
 node:
-	@node -e 'process.exit(+process.versions.node.split(".")[0] < 20)' 2>/dev/null && command -v npm >/dev/null || { echo "Node.js 20 or later with npm is missing: install it from https://nodejs.org, on Debian with: apt-get install nodejs npm" >&2; exit 1; }
+	@node -e 'process.exitCode = Number(process.versions.node.split(".")[0]) < 20 ? 1 : 0' 2>/dev/null && command -v npm >/dev/null || { echo "Node.js 20 or later with npm is missing: install it from https://nodejs.org, on Debian with: apt-get install nodejs npm" >&2; exit 1; }
 
 clean:
 	rm -rf .venv target fuzz/target out editor/node_modules editor/src/wasm editor/public/samples python/neuralmls/editor_server/static
