@@ -7,6 +7,7 @@ import { pointAt } from "../model/vec3.ts";
 import { DEFAULT_VIEW, type View } from "../model/view.ts";
 import type { Autosave } from "../storage/autosave.ts";
 import type { Core, Files, OnProgress, Opened } from "../worker/protocol.ts";
+import { servedSession } from "../worker/served.ts";
 import type { Display } from "./display.ts";
 import { download, extensionOf, readAll, sort, stemOf } from "./files.ts";
 import type { Sample, State, Toast } from "./state.ts";
@@ -64,9 +65,13 @@ export class App {
     } catch {
       // A copy of the editor without samples works as well.
     }
-    // What `neuralmls edit` was started with.
-    if (new URLSearchParams(location.search).has("session")) await this.#guarded(async () => this.openBytes(await fetchSession()));
-    else await this.offerRecovery();
+    await this.#guarded(async () => {
+      const served = await servedSession();
+      if (!served) return this.offerRecovery();
+      await this.#openShape(served.files, served.name);
+      if (served.points) this.#openPoints(served.points.name, served.points.text);
+      this.display.focus("all");
+    });
   }
 
   // Opening
@@ -82,7 +87,7 @@ export class App {
     else if (points === undefined) {
       throw new Error(`${[...files.keys()].join(", ")}: expected a shape (OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV, NPY) or control points (JSON, CSV)`);
     }
-    if (points !== undefined) this.#openPoints(points, files.get(points) as Uint8Array);
+    if (points !== undefined) this.#openPoints(points, textOf(points, files.get(points) as Uint8Array));
     if (shape !== undefined) this.display.focus("all");
   }
 
@@ -107,15 +112,14 @@ export class App {
     });
   }
 
-  #openPoints(name: string, bytes: Uint8Array): void {
+  #openPoints(name: string, text: string): void {
     const { shape } = this.store.value;
     if (!shape) throw new Error(`${name}: these are control points; open the shape that they belong to first`);
     let session: Session;
     try {
-      session = parseSession(new TextDecoder("utf-8", { fatal: true }).decode(bytes), shape.opened.dim);
+      session = parseSession(text, shape.opened.dim);
     } catch (error) {
-      const reason = error instanceof TypeError ? "expected UTF-8 text" : messageOf(error);
-      throw new Error(`${name}: ${reason}`);
+      throw new Error(`${name}: ${messageOf(error)}`);
     }
     this.do(load(session));
     const { centre, half } = shape.opened.frame;
@@ -321,6 +325,14 @@ const sentence = (text: string): string => {
   return /[.!?]$/.test(capital) ? capital : `${capital}.`;
 };
 
+function textOf(name: string, bytes: Uint8Array): string {
+  try {
+    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+  } catch {
+    throw new Error(`${name}: expected UTF-8 text`);
+  }
+}
+
 async function fetchBytes(url: string): Promise<Uint8Array> {
   const response = await fetch(url);
   if (!response.ok) throw new Error(`${url} could not be loaded (${response.status}).`);
@@ -330,18 +342,4 @@ async function fetchBytes(url: string): Promise<Uint8Array> {
 /** The samples that were built with the editor. */
 export async function fetchSamples(): Promise<Sample[]> {
   return JSON.parse(new TextDecoder().decode(await fetchBytes("./samples/index.json"))) as Sample[];
-}
-
-/** The files that `neuralmls edit` serves: a shape, its companions, and control points. */
-async function fetchSession(): Promise<Files> {
-  interface Listed {
-    name: string;
-    address: string;
-  }
-  const described = JSON.parse(new TextDecoder().decode(await fetchBytes("./session.json"))) as {
-    files: Listed[];
-    points: Listed | null;
-  };
-  const all = [...described.files, ...(described.points ? [described.points] : [])];
-  return new Map(await Promise.all(all.map(async ({ name, address }) => [name, await fetchBytes(`./${address}`)] as const)));
 }

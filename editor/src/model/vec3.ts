@@ -4,7 +4,6 @@ export type Vec3 = readonly [number, number, number];
 export type Axis = "x" | "y" | "z";
 
 export const AXES: readonly Axis[] = ["x", "y", "z"];
-export const ZERO: Vec3 = [0, 0, 0];
 
 export const axisIndex = (axis: Axis): 0 | 1 | 2 => (axis === "x" ? 0 : axis === "y" ? 1 : 2);
 
@@ -13,12 +12,6 @@ export const subtract = (a: Vec3, b: Vec3): Vec3 => [a[0] - b[0], a[1] - b[1], a
 export const scale = (a: Vec3, by: number): Vec3 => [a[0] * by, a[1] * by, a[2] * by];
 export const distance = (a: Vec3, b: Vec3): number => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 export const equal = (a: Vec3, b: Vec3): boolean => a[0] === b[0] && a[1] === b[1] && a[2] === b[2];
-export const isFinite = (a: Vec3): boolean => a.every(Number.isFinite);
-
-/** The mean of points; the origin where there are none. */
-export function mean(points: readonly Vec3[]): Vec3 {
-  return points.length === 0 ? ZERO : scale(points.reduce(add, ZERO), 1 / points.length);
-}
 
 /** All coordinates in a row, as the core takes them. */
 export function flatten(points: readonly Vec3[]): Float64Array<ArrayBuffer> {

@@ -13,11 +13,13 @@ export function LookBar() {
   const app = useApp();
   const { view, session, shape } = useAppState();
   if (!shape) return null;
+  // What has none is shown plain.
+  const colours = shape.hasAppearance ? COLOURS : [{ ...COLOURS[0], label: "Plain", title: "One colour (1)" }, ...COLOURS.slice(1)];
   const chosen = session.points.find((point) => point.id === session.selection.at(-1));
   return (
     <div class="look-bar">
       <div class="row">
-        <Segmented label="Colours" value={view.colouring} options={COLOURS} onChange={(colouring) => app.setView({ colouring })} />
+        <Segmented label="Colours" value={view.colouring} options={colours} onChange={(colouring) => app.setView({ colouring })} />
         {shape.opened.triangles && (
           <Button quiet icon="wire" label="Wireframe" hint="X" pressed={view.wireframe} onClick={() => app.setView({ wireframe: !view.wireframe })} />
         )}

@@ -384,7 +384,7 @@ export class Viewport {
 }
 
 /** The next smaller of 1, 2 or 5 times a power of ten. */
-export function niceStep(size: number): number {
+function niceStep(size: number): number {
   const power = 10 ** Math.floor(Math.log10(size));
   return power * (size / power >= 5 ? 5 : size / power >= 2 ? 2 : 1);
 }
