@@ -85,6 +85,43 @@ test("an unmoved shape is saved byte for byte", async ({ page }) => {
   expect(same).toBe(chair.toString());
 });
 
+test("a glTF is saved with its buffer, which is called after it", async ({ page }) => {
+  const positions = Float32Array.from([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]);
+  const document = {
+    asset: { version: "2.0", extras: "kept" },
+    scenes: [{ nodes: [0] }],
+    nodes: [{ mesh: 0 }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 } }] }],
+    accessors: [{ bufferView: 0, componentType: 5126, count: 4, type: "VEC3", min: [0, 0, 0], max: [1, 1, 1] }],
+    bufferViews: [{ buffer: 0, byteLength: 48 }],
+    buffers: [{ uri: "data/points.bin", byteLength: 48 }],
+  };
+  const saved = await page.evaluate(
+    async ([text, numbers]) => {
+      const files = new Map([
+        ["shape.gltf", new TextEncoder().encode(text)],
+        ["points.bin", new Uint8Array(Float32Array.from(numbers).buffer)],
+      ]);
+      const { namedFiles, warnings } = await window.core.open(files, "shape.gltf");
+      await window.core.fit(Float64Array.from([0, 0, 0]), { kind: "classic", alpha: 1, epsilon: 0 });
+      const motion = { targets: Float64Array.from([0, 0.5, 0]), transform: "rigid", temperature: 1 } as const;
+      const saved = await window.core.save("bent.gltf", motion);
+      const missing = await window.core.open(new Map([["shape.gltf", files.get("shape.gltf")!]]), "shape.gltf").catch((error) => error.message);
+      return { namedFiles, warnings, missing, files: saved.files.map(({ name, bytes }) => ({ name, bytes: [...bytes] })) };
+    },
+    [JSON.stringify(document), [...positions]] as const,
+  );
+  expect(saved.namedFiles).toEqual(["data/points.bin"]);
+  expect(saved.warnings).toEqual([]);
+  expect(saved.missing).toMatch(/^shape\.gltf: .*data\/points\.bin/);
+  expect(saved.files.map((file) => file.name)).toEqual(["bent.gltf", "bent.bin"]);
+  const written = JSON.parse(Buffer.from(saved.files[0].bytes).toString());
+  expect(written.buffers[0].uri).toBe("bent.bin");
+  expect(written.asset.extras).toBe("kept");
+  const moved = new Float32Array(Uint8Array.from(saved.files[1].bytes).buffer);
+  expect([...moved]).toEqual([...positions].map((c, at) => (at % 3 === 1 ? c + 0.5 : c)));
+});
+
 test("a refused file is one sentence, and leaves the open shape as it is", async ({ page }) => {
   await open(page, "chair.obj", chair);
   for (const [name, text, words] of [
