@@ -6,6 +6,10 @@ const chromium = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-
   (path) => path && existsSync(path),
 );
 
+// A port of this run's own, which its workers find here.
+process.env.NEURALMLS_PAGES_PORT ??= String(20_000 + (process.pid % 20_000));
+const port = Number(process.env.NEURALMLS_PAGES_PORT);
+
 export default defineConfig({
   projects: [
     { name: "e2e", testDir: "tests/e2e" },
@@ -36,8 +40,8 @@ export default defineConfig({
   },
   webServer: {
     // Pages of single parts, straight from their sources; the built editor is served by the package (fixtures.ts).
-    command: "npx vite --port 8418 --strictPort",
+    command: `npx vite --port ${port} --strictPort`,
     env: { NEURALMLS_TEST: "1" },
-    port: 8418,
+    port,
   },
 });

@@ -3,7 +3,7 @@
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Page } from "@playwright/test";
-import { data, samples } from "./tools.ts";
+import { data, pages, samples } from "./tools.ts";
 
 export interface Compared {
   transform: string;
@@ -61,7 +61,7 @@ export function published(): Case | null {
 
 /** By every map at each of three temperatures, with the weights of one fit. */
 export async function compare(page: Page, { file, p, q }: Case, weights: object): Promise<Compared[]> {
-  await page.goto("http://localhost:8418/tests/e2e/pages/shader.html");
+  await page.goto(`${pages}/shader.html`);
   await page.waitForFunction(() => window.compare);
   return page.evaluate(
     ([base64, p, q, weights, motions]) => window.compare("shape.obj", base64, p, q, weights, motions),

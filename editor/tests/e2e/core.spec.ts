@@ -4,7 +4,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { expect, test, type Page } from "@playwright/test";
 import type { Core, WeightsSpec } from "../../src/worker/protocol.ts";
-import { data, difference, neuralmls, samples, vertices } from "./tools.ts";
+import { data, difference, neuralmls, pages, samples, vertices } from "./tools.ts";
 
 declare global {
   interface Window {
@@ -19,7 +19,7 @@ const points: { position: number[]; target: number[] }[] = JSON.parse(
 const moved = points.map(({ position: [x, y, z] }, i) => [x! + 0.1 * Math.sin(i), y! + 0.05 * i, z!]);
 
 test.beforeEach(async ({ page }) => {
-  await page.goto("http://localhost:8418/tests/e2e/pages/core.html");
+  await page.goto(`${pages}/core.html`);
   await page.waitForFunction(() => window.core);
 });
 

@@ -9,6 +9,9 @@ export const root = resolve(dirname(fileURLToPath(import.meta.url)), "../../..")
 export const samples = join(root, "editor/public/samples");
 export const program = process.env.NEURALMLS ?? join(root, ".venv/bin/neuralmls");
 
+/** Where the pages of single parts are served. */
+export const pages = `http://localhost:${process.env.NEURALMLS_PAGES_PORT}/tests/e2e/pages`;
+
 /** Real files for tests, where they are. */
 const real = process.env.NEURALMLS_DATA ?? resolve(root, "../shared/data");
 export const data = existsSync(real) ? real : null;
