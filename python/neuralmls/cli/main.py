@@ -26,6 +26,7 @@ COMMANDS = (
     "demo",
     "convert-kpd",
     "benchmark",
+    "reproduce",
     "study",
 )
 
