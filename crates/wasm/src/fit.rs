@@ -8,7 +8,7 @@ use wasm_bindgen::prelude::*;
 use crate::refused;
 
 enum Function {
-    Neural(neuralmls_core::Fit),
+    Neural(Box<neuralmls_core::Fit>),
     Classic(InverseDistance),
 }
 
@@ -40,7 +40,7 @@ impl Weights {
 
 impl Weights {
     pub(crate) fn neural(p: Vec<f64>, fit: neuralmls_core::Fit) -> Weights {
-        Weights { p, function: Function::Neural(fit) }
+        Weights { p, function: Function::Neural(Box::new(fit)) }
     }
 
     pub(crate) fn classic(p: Vec<f64>, function: InverseDistance) -> Weights {
