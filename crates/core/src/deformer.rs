@@ -90,6 +90,16 @@ impl Deformer {
         self.x.len() / self.dim
     }
 
+    /// What the points are bound by, n x m.
+    pub fn logits(&self) -> &[f32] {
+        &self.logits
+    }
+
+    /// Lets the next frames do something else to the shape locally; neither the logits nor the weights change by it.
+    pub fn set_transform(&mut self, transform: Transform) {
+        self.transform = transform;
+    }
+
     /// Whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.x.is_empty()
