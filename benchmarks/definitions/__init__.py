@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from benchmarks.definitions import (
+    exact,
     frame_affine,
     frame_rigid,
     growth,
@@ -30,4 +31,5 @@ ALL: dict[str, Definition] = {
     "process": process.run,
     "million": million.run,
     "growth": growth.run,
+    "exact": exact.run,
 }
