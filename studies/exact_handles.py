@@ -1,14 +1,12 @@
 """What exact handles change: `python -m studies.exact_handles FOLDER [--figures FOLDER]`, half a minute.
 
-FOLDER holds the chairs and airplanes of the paper with their `control_points.json` (names, places, displacements; the
-shapes are ShapeNet's, and not ours to give). Every case is deformed twice with the same weights, soft and exact.
+FOLDER has the paper's chairs and airplanes in `shapenet/` (they are not ours to give). Every case is deformed twice with the same weights, soft and exact.
 Prints the tables of docs/beyond-the-paper.md; its pictures are of our own sample shapes.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,10 +17,12 @@ from numpy.typing import NDArray
 
 import neuralmls as nm
 from neuralmls import samples
+from neuralmls.experiments.published import published
 from neuralmls.metrics import measure
 
 Array = NDArray[np.float64]
 
+SHAPES = ("ShapeNetPlane1", "ShapeNetPlane2", "ShapeNetChair1", "ShapeNetChair3", "chair2")
 PAPER, OURS, PUBLISHED = "the paper: width 1024, 48 steps", "our default: each owns 0.9", "published code: width 128"
 TRAININGS: dict[str, dict[str, int]] = {PAPER: {"steps": 48}, OURS: {}, PUBLISHED: {"steps": 48, "width": 128}}
 
@@ -59,17 +59,15 @@ class Result:
     folded: int
 
 
-def cases(folder: Path) -> Iterator[Case]:
-    """Every displacement that moves a control point."""
-    for name, told in json.loads((folder / "control_points.json").read_text()).items():
-        (file,) = (folder / name).glob("*.obj")
-        shape = nm.read(file)
-        normalised = told["space"] == "normalised"
-        scale = float(np.ptp(shape.bounds, axis=0).max()) / 2 if normalised else 1.0
-        p = np.array(told["control_points"]) * scale + (shape.bounds.mean(axis=0) if normalised else 0.0)
-        for displacement, offsets in told["offsets"].items():
-            if np.any(offsets):
-                yield Case(f"{name}, {displacement}", shape, p, p + np.array(offsets) * scale)
+def cases(data: Path) -> Iterator[Case]:
+    """Every published displacement that moves a control point."""
+    for name in SHAPES:
+        found = published(data, name)
+        if found is None:
+            raise SystemExit(f"{data}: expected the paper's shapes, but there is no shapenet/{name}")
+        for displacement, points in found.displacements.items():
+            if (points.sources != points.targets).any():
+                yield Case(f"{name}, {displacement}", found.shape, points.sources, points.targets)
 
 
 def result(case: Case, weights: nm.NeuralWeights, adherence: float) -> Result:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import neuralmls as nm
+from neuralmls.experiments.published import published
 from neuralmls.protocol import Transform
 
 CASES = ["ShapeNetChair1", "ShapeNetChair3", "ShapeNetPlane1", "ShapeNetPlane2"]
@@ -17,17 +17,15 @@ CASES = ["ShapeNetChair1", "ShapeNetChair3", "ShapeNetPlane1", "ShapeNetPlane2"]
 @pytest.mark.parametrize("transform", ["rigid", "similarity", "affine"])
 @pytest.mark.parametrize("name", CASES)
 def test_the_handles_of_the_user_study_arrive(data: Path, name: str, transform: Transform) -> None:
-    shape = nm.read(data / "shapenet" / name / "model.obj")
-    case = json.loads((data / "shapenet" / "control_points.json").read_text())[name]
-    half, centre = np.ptp(shape.bounds, axis=0).max() / 2, shape.bounds.mean(axis=0)
-    p = np.array(case["control_points"]) * half + centre
-    weights = nm.NeuralWeights.fit(p, bounds=shape.bounds, steps=48)
+    case = published(data, name)
+    assert case is not None
+    p, side = case.displacements["default"].sources, np.ptp(case.shape.bounds, axis=0).max()
+    weights = nm.NeuralWeights.fit(p, bounds=case.shape.bounds, steps=48)
     handles, exact = nm.Deformer(p, weights, transform=transform), nm.ExactHandles(weights, transform=transform)
-    for offsets in case["offsets"].values():
-        q = p + np.array(offsets) * half
+    for q in (points.targets for points in case.displacements.values()):
         aim = exact.aim(q)
-        assert np.abs(handles.deform(q, adherence=1.0) - q).max() < 1e-6 * 2 * half
-        assert aim.misses.max() < 1e-6 * 2 * half
+        assert np.abs(handles.deform(q, adherence=1.0) - q).max() < 1e-6 * side
+        assert aim.misses.max() < 1e-6 * side
         np.testing.assert_array_equal(handles.deform(aim.targets), handles.deform(q, adherence=1.0))
 
 

@@ -15,7 +15,19 @@ from neuralmls.errors import ArgumentError, NeuralMLSError
 
 BAD_DATA, WRONG_USE, INTERRUPTED = 1, 2, 130
 
-COMMANDS = ("deform", "inspect", "points", "render", "compare", "sample", "demo", "convert-kpd", "benchmark", "study")
+COMMANDS = (
+    "deform",
+    "inspect",
+    "points",
+    "render",
+    "compare",
+    "sample",
+    "demo",
+    "convert-kpd",
+    "benchmark",
+    "reproduce",
+    "study",
+)
 
 
 class Commands(click.Group):

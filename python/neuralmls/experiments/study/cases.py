@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 from neuralmls.control_points import ControlPoints
-from neuralmls.errors import FileError, NeuralMLSError
+from neuralmls.errors import FileError
 from neuralmls.experiments.methods import Geometry
+from neuralmls.experiments.published import Published, published
 from neuralmls.experiments.study.variants import VARIANTS, made
-from neuralmls.shape import Shape, read
+from neuralmls.shape import Shape
 
 CATEGORIES = ("chair", "airplane", "car")
 # The paper's shapes, as far as they were published with the displacements of its study.
@@ -65,39 +62,24 @@ def cases(data: str | os.PathLike[str] | None) -> Iterator[Case]:
         Shapes or control points are there, but cannot be read.
     """
     for category in CATEGORIES:
-        published = [] if data is None else _published(Path(data) / "shapenet", PUBLISHED[category])
-        for name, (shape, displacements) in published:
+        known = [] if data is None else _published(Path(data), PUBLISHED[category])
+        for name, (shape, displacements) in known:
             for displacement, points in displacements.items():
                 yield Case(category, name, displacement, "published with the paper", shape, points)
-        for variant in VARIANTS[category][: SHAPES - len(published)]:
+        for variant in VARIANTS[category][: SHAPES - len(known)]:
             surface, displacements = made(variant)
             for displacement, points in displacements.items():
                 yield Case(category, variant.name, displacement, "made by this package", surface, points)
 
 
-def _published(folder: Path, names: Iterable[str]) -> list[tuple[str, tuple[Shape, dict[str, ControlPoints]]]]:
+def _published(data: Path, names: Iterable[str]) -> list[tuple[str, tuple[Shape, dict[str, ControlPoints]]]]:
     """The shapes of these names that are there, with the displacements of the paper's study, by number."""
-    table = folder / "control_points.json"
-    found = [name for name in names if (folder / name / "model.obj").is_file()]
-    if not found or not table.is_file():
-        return []
+    found = [(name, entry) for name in names if (entry := published(data, name)) is not None]
+    return [(name, (entry.shape, _numbered(name, entry))) for name, entry in found]
+
+
+def _numbered(name: str, entry: Published) -> dict[str, ControlPoints]:
     try:
-        entries = json.loads(table.read_bytes())
-        return [(name, _moved(read(folder / name / "model.obj"), entries[name])) for name in found]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        if isinstance(error, NeuralMLSError):
-            raise
-        raise FileError(f"{table}: expected the paper's control points, found something else: {error}") from error
-
-
-def _moved(shape: Shape, entry: dict[str, Any]) -> tuple[Shape, dict[str, ControlPoints]]:
-    """A published shape, whose control points and offsets are in halves of its longest side from its middle."""
-    low, high = shape.bounds
-    half = (high - low).max() / 2
-    sources = (low + high) / 2 + half * np.array(entry["control_points"], dtype=np.float64)
-    return shape, {
-        f"displacement {number}": ControlPoints(
-            sources, sources + half * np.array(entry["offsets"][f"user_study_{number}"]), entry["names"]
-        )
-        for number in range(1, DISPLACEMENTS + 1)
-    }
+        return {f"displacement {n}": entry.displacements[f"user_study_{n}"] for n in range(1, DISPLACEMENTS + 1)}
+    except KeyError as missing:
+        raise FileError(f"control_points.json: '{name}' has no displacement {missing}") from None

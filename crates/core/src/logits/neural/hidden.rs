@@ -14,6 +14,7 @@
 
 use super::adam::Rates;
 use super::network::Layer;
+use crate::memory::filled;
 use crate::parallel::{for_each_block, for_each_block_pair};
 use crate::simd::{multiversion, Aligned, Lanes, Simd, WIDTH};
 
@@ -60,16 +61,18 @@ pub(super) struct Hidden {
 impl Hidden {
     /// Of the layer's weights for some of its inputs.
     pub(super) fn new(layer: &Layer, inputs: Vec<usize>) -> Hidden {
-        let row = inputs.len().div_ceil(WIDTH) | 1;
-        let mut state = vec![Aligned::ZERO; layer.outputs() * 3 * row];
-        for (weights, state) in layer.weight.chunks_exact(layer.inputs()).zip(state.chunks_exact_mut(3 * row))
-        {
-            for (lanes, inputs) in state.iter_mut().zip(inputs.chunks(WIDTH)) {
-                for (lane, input) in lanes.0.iter_mut().zip(inputs) {
-                    *lane = weights[*input];
+        let (row, count) = (inputs.len().div_ceil(WIDTH) | 1, layer.inputs());
+        let size = GROUP * 3 * row;
+        let state = filled(Vec::new(), layer.outputs() * 3 * row, Aligned::ZERO, size, |group, state| {
+            let weight = &layer.weight[GROUP * count * group..];
+            for (weights, state) in weight.chunks_exact(count).zip(state.chunks_exact_mut(3 * row)) {
+                for (lanes, inputs) in state.iter_mut().zip(inputs.chunks(WIDTH)) {
+                    for (lane, input) in lanes.0.iter_mut().zip(inputs) {
+                        *lane = weights[*input];
+                    }
                 }
             }
-        }
+        });
         Hidden { simd: Simd::detect(), state, row, inputs, awake: vec![false; layer.outputs()] }
     }
 

@@ -4,6 +4,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::network::Layer;
+use crate::memory::filled;
 
 /// Frequencies of the random Fourier features, as in the published code.
 const FREQUENCIES: usize = 32;
@@ -24,8 +25,20 @@ impl Random {
     /// Weights and biases uniform in `+-1/sqrt(inputs)`.
     pub(super) fn layer(&mut self, inputs: usize, outputs: usize) -> Layer {
         let bound = 1.0 / (inputs as f32).sqrt();
-        let mut draw = |count: usize| (0..count).map(|_| (2.0 * self.unit() - 1.0) * bound).collect();
-        Layer { weight: draw(inputs * outputs), bias: draw(outputs) }
+        Layer { weight: self.uniform(inputs * outputs, bound), bias: self.uniform(outputs, bound) }
+    }
+
+    /// The next `count` numbers, uniform in `+-bound`: the generator can begin anywhere, so that each thread draws its own.
+    fn uniform(&mut self, count: usize, bound: f32) -> Vec<f32> {
+        const BLOCK: usize = 1 << 14;
+        let begin = self.0.get_word_pos();
+        self.0.set_word_pos(begin + count as u128);
+        let generator = &self.0;
+        filled(Vec::new(), count, 0.0, BLOCK, |index, block| {
+            let mut random = Random(generator.clone());
+            random.0.set_word_pos(begin + (BLOCK * index) as u128);
+            block.iter_mut().for_each(|value| *value = (2.0 * random.unit() - 1.0) * bound);
+        })
     }
 
     /// `B` of the Fourier features: 32 x d, normal with deviation `sigma` (Box and Muller 1958).
@@ -52,6 +65,16 @@ mod tests {
         assert!((-0.1..-0.0999).contains(&least) && (0.0999..=0.1).contains(&most), "{least} {most}");
         assert!((sum / 30_000.0).abs() < 1e-3);
         assert_eq!((layer.inputs(), layer.outputs()), (100, 300));
+    }
+
+    #[test]
+    fn many_numbers_are_those_of_one_sequence() {
+        let (mut at_once, mut one_by_one) = (Random::new(3), Random::new(3));
+        let layer = at_once.layer(40, 1000);
+        for value in layer.weight.iter().chain(&layer.bias) {
+            assert_eq!(*value, (2.0 * one_by_one.unit() - 1.0) * (1.0 / 40f32.sqrt()));
+        }
+        assert_eq!(at_once.unit(), one_by_one.unit());
     }
 
     #[test]
