@@ -1,7 +1,8 @@
 """What exact handles change: `python -m studies.exact_handles FOLDER [--figures FOLDER]`, half a minute.
 
-FOLDER has the paper's chairs and airplanes in `shapenet/` (they are not ours to give). Every case is deformed twice with the same weights, soft and exact.
-Prints the tables of docs/beyond-the-paper.md; its pictures are of our own sample shapes.
+FOLDER has the paper's chairs and airplanes in `shapenet/` (they are not ours to give). Every case is deformed twice
+with the same weights, soft and exact. Prints the tables of docs/beyond-the-paper.md; its pictures are of our own
+sample shapes.
 """
 
 from __future__ import annotations
