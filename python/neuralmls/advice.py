@@ -20,14 +20,15 @@ from neuralmls.protocol import Transform, Weights
 
 Kind: TypeAlias = Literal["misses", "folds", "torn", "ungoverned"]
 
-# A handle may stop short by this part of the longest move (study: up to 0.075), an exact one by this part of the box.
-SHORT, ARRIVED = 0.1, 1e-6
+# A soft handle may stop short by this part of the longest move (study: up to 0.075), and of the longest side (0.011);
+# an exact one by this part of the side.
+SHORT, WIDE, ARRIVED = 0.1, 0.02, 1e-6
 # This part of the shape may be folded (study: 0.0003 at most, but for one true fold of 0.003 to 0.011).
 FOLDED = 0.002
 # This part may be stretched beyond `probe.STRETCH` (study: none, 3.3 at most): bands where weights switch are thin.
 TORN = 0.0005
 # A place may be so many spacings away from all control points (study: up to 0.83; points spread by farthest-point
-# sampling: never above 1), if it moves by more than this part of the longest side.
+# sampling: about 1 at most), if it moves by more than this part of the longest side.
 FAR, MOVED = 1.5, 0.01
 LISTED = 5
 
@@ -131,7 +132,9 @@ def _misses(probe: Probe, names: tuple[str, ...], setting: _Setting) -> Advice |
     """Control points that stop short of their targets."""
     distance = probe.missed(probe.transform, setting.temperature, setting.adherence)
     longest = float(np.linalg.norm(probe.q - probe.p, axis=1).max())
-    allowed = max(ARRIVED * probe.side, SHORT * longest if setting.adherence == 0 else 0.0)
+    allowed = ARRIVED * probe.side
+    if setting.adherence == 0:
+        allowed = max(allowed, min(SHORT * longest, WIDE * probe.side))
     short = [int(i) for i in (-distance).argsort() if distance[i] > allowed]
     if not short:
         return None

@@ -24,7 +24,7 @@ Array: TypeAlias = NDArray[np.float64]
 # places to lie in is still seen from its sides.
 PLACES, STEP = 4000, 2.5e-3
 # A stretch may be so many times that of most of the shape.
-STRETCH = 5.0
+STRETCH = 4.0
 # Everything moves as one if the Jacobians differ by no more.
 ALIKE = 1e-6
 
