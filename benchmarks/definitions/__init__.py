@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from benchmarks.definitions import (
     editor,
+    exact,
     frame_affine,
     frame_rigid,
     growth,
@@ -32,4 +33,5 @@ ALL: dict[str, Definition] = {
     "million": million.run,
     "growth": growth.run,
     "editor": editor.run,
+    "exact": exact.run,
 }

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from neuralmls._core import VERSION as __version__
 
 if TYPE_CHECKING:
+    from neuralmls.advice import Advice, advise
     from neuralmls.control_points import ControlPoints
     from neuralmls.deformer import Deformer
     from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError, NotApplicable
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from neuralmls.weights.softmax import softmax
 
 __all__ = [
+    "Advice",
     "Aim",
     "ArgumentError",
     "ControlPointError",
@@ -42,6 +44,7 @@ __all__ = [
     "Shape",
     "Weights",
     "__version__",
+    "advise",
     "deform",
     "farthest_points",
     "read",
@@ -51,6 +54,7 @@ __all__ = [
 # Which module has which name. They are imported when first asked for: `neuralmls --help` need not wait for numpy.
 # No module may be called like a name that another one gives: importing it would hide that name.
 _HOMES = {
+    "Advice": "advice",
     "Aim": "exact",
     "ArgumentError": "errors",
     "ControlPointError": "errors",
@@ -65,6 +69,7 @@ _HOMES = {
     "PointTree": "point_tree",
     "Shape": "shape",
     "Weights": "weights",
+    "advise": "advice",
     "deform": "pipeline",
     "farthest_points": "placement",
     "read": "shape",

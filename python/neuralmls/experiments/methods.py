@@ -1,7 +1,7 @@
 """The methods that experiments compare, each under one name and with one way to call it.
 
 >>> list(METHODS)
-['neural', 'classic', 'rbf', 'arap', 'biharmonic']
+['neural', 'neural-exact', 'classic', 'rbf', 'arap', 'biharmonic']
 >>> square = Surface(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]]))
 >>> METHODS["classic"](square, square.positions, square.positions + 1).tolist()[0]
 [1.0, 1.0, 1.0]
@@ -72,7 +72,12 @@ class Method:
 
 
 def neural(
-    title: str = "NeuralMLS", *, transform: Transform = "rigid", temperature: float = 1.0, **training: Any
+    title: str = "NeuralMLS",
+    *,
+    transform: Transform = "rigid",
+    temperature: float = 1.0,
+    adherence: float = 0.0,
+    **training: Any,
 ) -> Method:
     """The paper's weights, with the options of `Deformer` and of `NeuralWeights.fit` (steps, width, seed, ...)."""
 
@@ -81,7 +86,8 @@ def neural(
         weights = NeuralWeights.fit(p, bounds=bounds, **training)
 
         def deformed(x: Array) -> Array:
-            return np.asarray(Deformer(x, weights, transform=transform).deform(q, temperature), dtype=np.float64)
+            deformer = Deformer(x, weights, transform=transform)
+            return np.asarray(deformer.deform(q, temperature, adherence=adherence), dtype=np.float64)
 
         return deformed
 
@@ -124,6 +130,7 @@ def _of_space(title: str, name: str, **options: Any) -> Method:
 
 METHODS: dict[str, Method] = {
     "neural": neural(),
+    "neural-exact": neural("NeuralMLS, exact", adherence=1.0),
     "classic": classic(),
     "rbf": _of_space(baselines.TITLES["rbf"], "rbf"),
     "arap": _of_vertices(baselines.TITLES["arap"], "arap"),
