@@ -4,15 +4,17 @@ PYTHON ?= python3
 BIN := .venv/bin
 RUST := Cargo.toml Cargo.lock $(shell find crates -name '*.rs' -o -name Cargo.toml)
 FUZZ_SECONDS ?= 30
+TARGET := $(or $(CARGO_TARGET_DIR),target)
+WASM_BINDGEN := $(TARGET)/tools/bin/wasm-bindgen
 # The property tests' random numbers: the same every time, so that what passes here passes elsewhere.
 export PROPTEST_RNG_SEED ?= 1
 
-.PHONY: demo test bench rust python fuzz wasm tools clean
+.PHONY: demo test bench rust python fuzz wasm wasm-target editor editor-test tools node clean
 
 demo: .venv/figures.stamp
 	$(BIN)/neuralmls demo -o out --force
 
-test: rust wasm python fuzz
+test: rust wasm python editor-test fuzz
 	@echo "make test: everything passed"
 
 # Times the kernels against PyTorch, NumPy and molesq, and checks every answer. PyTorch from PyPI takes 6 GB of disk.
@@ -28,9 +30,26 @@ rust: tools
 	NEURALMLS_SIMD=portable cargo test --locked -p neuralmls-core
 
 # The browser editor's crates: they must compile without threads for WebAssembly.
-wasm: tools
+wasm: wasm-target
+	cargo clippy --locked -p neuralmls-core -p neuralmls-shapes -p neuralmls-wasm --no-default-features --target wasm32-unknown-unknown -- -D warnings
+
+wasm-target: tools
 	@rustup target list --installed 2>/dev/null | grep -q wasm32-unknown-unknown || rustup target add wasm32-unknown-unknown
-	cargo clippy --locked -p neuralmls-core -p neuralmls-shapes --no-default-features --target wasm32-unknown-unknown -- -D warnings
+
+# Builds the browser editor into the package, from where `neuralmls edit` serves it and wheels take it.
+editor: wasm-target node .venv/figures.stamp
+	RUSTFLAGS="-C target-feature=+simd128" cargo build --release --locked -p neuralmls-wasm --target wasm32-unknown-unknown
+	@version=$$(cargo pkgid wasm-bindgen | sed 's/.*[@#]//'); \
+	$(WASM_BINDGEN) --version 2>/dev/null | grep -qF "$$version" || { \
+	install="cargo install --quiet --root $(TARGET)/tools --bin wasm-bindgen wasm-bindgen-cli@$$version"; \
+	$$install --locked || $$install; } # A mirror of crates.io may lack what is locked.
+	$(WASM_BINDGEN) --target web --out-dir editor/src/wasm --remove-name-section --remove-producers-section \
+		$(TARGET)/wasm32-unknown-unknown/release/neuralmls_wasm.wasm
+	node editor/scripts/samples.mjs $(BIN)/neuralmls editor/public/samples
+	cd editor && npm ci --no-audit --no-fund --silent && npm run --silent build
+
+editor-test: editor .venv/test.stamp
+	cd editor && npm run --silent check && npm test --silent && npm run --silent e2e
 
 python: .venv/test.stamp
 	$(BIN)/ruff format --check .
@@ -62,5 +81,8 @@ tools:
 	@$(PYTHON) -c 'import ensurepip' 2>/dev/null || { echo "Python's venv module is missing: install it, on Debian with: apt-get install python3-venv" >&2; exit 1; }
 	@command -v cargo >/dev/null || { echo "Rust is missing: install it from https://rustup.rs" >&2; exit 1; }
 
+node:
+	@node -e 'process.exitCode = Number(process.versions.node.split(".")[0]) < 20 ? 1 : 0' 2>/dev/null && command -v npm >/dev/null || { echo "Node.js 20 or later with npm is missing: install it from https://nodejs.org, on Debian with: apt-get install nodejs npm" >&2; exit 1; }
+
 clean:
-	rm -rf .venv target fuzz/target out
+	rm -rf .venv target fuzz/target out editor/node_modules editor/src/wasm editor/public/samples python/neuralmls/editor_server/static

@@ -25,7 +25,7 @@ def check(what: str, error: float, tolerance: float) -> str:
 
 @dataclass(frozen=True)
 class Row:
-    """One figure of ours, in seconds or bytes, beside a rival's.
+    """One figure of ours, in seconds, bytes or as a plain number, beside a rival's.
 
     `bar` is held against `ratio`: "faster" is how many times faster we are (at least), "times" how many times the
     rival's time we take (at most). Without a rival it is held against our figure itself (at most).
@@ -38,7 +38,7 @@ class Row:
     sense: Literal["faster", "times"] = "faster"
     bar: float | None = None
     limit: float | None = None
-    unit: Literal["s", "B"] = "s"
+    unit: Literal["s", "B", ""] = "s"
 
     @property
     def ratio(self) -> float | None:

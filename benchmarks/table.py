@@ -67,7 +67,9 @@ def limits(found: Limits, threads: int) -> str:
 
 
 def amount(value: float, unit: str) -> str:
-    """Seconds or bytes with three digits."""
+    """Seconds, bytes or a plain number with three digits."""
+    if not unit:
+        return f"{value:.3g}"
     steps = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)) if unit == "s" else (("GB", 1e9), ("MB", 1e6), ("kB", 1e3))
     for name, size in steps:
         if value >= size:

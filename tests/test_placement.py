@@ -83,9 +83,9 @@ def test_rare_places_in_a_large_cloud_are_found() -> None:
 
 def test_a_million_vertices_take_seconds() -> None:
     cloud = np.random.default_rng(0).random((1_000_000, 3))
-    start = time.perf_counter()
+    start = time.process_time()
     points = farthest_points(cloud, None, 64)
-    assert time.perf_counter() - start < 10.0
+    assert time.process_time() - start < 10.0
     assert spacing(points) > 0.2
 
 

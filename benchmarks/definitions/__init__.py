@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from benchmarks.definitions import (
+    editor,
+    exact,
     frame_affine,
     frame_rigid,
     growth,
@@ -30,4 +32,6 @@ ALL: dict[str, Definition] = {
     "process": process.run,
     "million": million.run,
     "growth": growth.run,
+    "editor": editor.run,
+    "exact": exact.run,
 }

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from neuralmls._core import VERSION as __version__
 
 if TYPE_CHECKING:
+    from neuralmls.advice import Advice, advise
     from neuralmls.control_points import ControlPoints
     from neuralmls.deformer import Deformer
     from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError, NotApplicable
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from neuralmls.weights.softmax import softmax
 
 __all__ = [
+    "Advice",
     "Aim",
     "ArgumentError",
     "ControlPointError",
@@ -43,6 +45,7 @@ __all__ = [
     "ShapeAwareWeights",
     "Weights",
     "__version__",
+    "advise",
     "deform",
     "farthest_points",
     "read",
@@ -52,6 +55,7 @@ __all__ = [
 # Which module has which name. They are imported when first asked for: `neuralmls --help` need not wait for numpy.
 # No module may be called like a name that another one gives: importing it would hide that name.
 _HOMES = {
+    "Advice": "advice",
     "Aim": "exact",
     "ArgumentError": "errors",
     "ControlPointError": "errors",
@@ -67,6 +71,7 @@ _HOMES = {
     "Shape": "shape",
     "ShapeAwareWeights": "weights",
     "Weights": "weights",
+    "advise": "advice",
     "deform": "pipeline",
     "farthest_points": "placement",
     "read": "shape",

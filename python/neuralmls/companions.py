@@ -30,6 +30,12 @@ def read_beside(folder: Path, name: str) -> bytes:
         raise FileError(f"cannot read '{name}' beside it: {error.strerror or error}") from error
 
 
+def found_beside(names: list[str], folder: Path) -> dict[str, Path]:
+    """The files of a folder that are named, and images that they name; not what is missing or leaves the folder."""
+    paths = {name: _inside(folder, name) for name in [*names, *_images(names, folder)]}
+    return {name: path for name, path in paths.items() if path is not None and path.is_file()}
+
+
 def copy_along(names: list[str], source: Path, target: Path) -> list[Path]:
     """Copy the files of folder `source` that are named, and images that they name, into folder `target`.
 
@@ -44,9 +50,9 @@ def copy_along(names: list[str], source: Path, target: Path) -> list[Path]:
     if source.resolve() == target.resolve():
         return []
     copied, kept = [], []
-    for name in dict.fromkeys([*names, *_images(names, source)]):
-        here, there = _inside(source, name), _inside(target, name)
-        if here is None or there is None or not here.is_file():
+    for name, here in found_beside(names, source).items():
+        there = _inside(target, name)
+        if there is None:
             continue
         if os.path.lexists(there):
             if not _same_content(here, there):

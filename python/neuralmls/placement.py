@@ -58,7 +58,7 @@ def farthest_points(positions: ArrayLike, faces: ArrayLike | None, count: int, *
     size = max(LEAST, EACH * count)
     cloud, on_surface = x, np.empty((0, x.shape[1]))
     if faces is not None and np.size(faces):
-        cloud, on_surface = _sample_faces(x - origin, np.asarray(faces), size, rng)
+        cloud, on_surface = sample_faces(x - origin, np.asarray(faces), size, rng)
         cloud = cloud + origin
     few = cloud if len(cloud) <= size else cloud[rng.permutation(len(cloud))[:size]]
     candidates = np.concatenate([few, on_surface + origin])
@@ -72,10 +72,10 @@ def farthest_points(positions: ArrayLike, faces: ArrayLike | None, count: int, *
     return candidates[chosen]
 
 
-def _sample_faces(
+def sample_faces(
     x: NDArray[np.float64], faces: NDArray[np.int64], size: int, rng: np.random.Generator
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The vertices of the faces that have area, and `size` samples of them; (x, none) without area."""
+    """Return the vertices of the faces (f, 3) that have area, and `size` samples of them; `x` and none without area."""
     if faces.min() < 0 or faces.max() >= len(x):
         raise ArgumentError(f"expected faces to name vertices 0 to {len(x) - 1}, found {faces.min()} to {faces.max()}")
     corner, u, v = x[faces[:, 0]], x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]]

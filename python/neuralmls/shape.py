@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from neuralmls import _core
 from neuralmls.arrays import as_points
-from neuralmls.companions import copy_along, read_beside
+from neuralmls.companions import copy_along, found_beside, read_beside
 from neuralmls.errors import ArgumentError, FileError
 from neuralmls.files import as_path, write_atomically
 
@@ -67,6 +67,11 @@ class Shape:
     def has_normals(self) -> bool:
         """Whether the file holds normals or tangents, which turn with the surface."""
         return self._file.has_normals
+
+    @property
+    def companions(self) -> dict[str, Path]:
+        """The files beside it that it names (materials, textures, buffers) and that are there, by those names."""
+        return found_beside(self._file.named_files, self._path.parent)
 
     def encode(
         self, positions: ArrayLike, *, maps: ArrayLike | None = None, stem: str | None = None

@@ -250,3 +250,35 @@ def test_exact_control_points_that_cannot_arrive_are_named(run, here):
     assert ran.code == 0
     assert "control points do not arrive exactly: 'b' by" in ran.err or "'a' by" in ran.err
     assert "--transform affine" in ran.err
+
+
+def test_check_says_what_is_likely_bad_and_ends_with_0(run, here):
+    (here / "pair.csv").write_text("name,x,y,z\nfoot,0.5,0,0.5\nleft,0,2,0.75\nright,1,2,0.75\n")
+    moves = ("--move", "left=1.5,0,0", "--move", "right=-1.5,1,0")
+    command = ("deform", "shape.obj", "--points", "pair.csv", *QUICK, *moves)
+    plain = run(*command, "-o", "a.obj", "--json")
+    assert (plain.code, plain.err, "advice" in json.loads(plain.out)) == (0, "", False)
+    ran = run(*command, "-o", "b.obj", "--json", "--check")
+    assert ran.code == 0
+    told = json.loads(ran.out)
+    assert "misses" in [advice["kind"] for advice in told["advice"]]
+    assert ran.err.splitlines() == [f"neuralmls: warning: {advice['sentence']}" for advice in told["advice"]]
+    assert set(told["advice"][0]) == {"kind", "sentence", "where", "control_points", "amount"}
+    assert "check" in told["seconds"]
+    assert (here / "a.obj").read_bytes() == (here / "b.obj").read_bytes()
+
+
+def test_check_is_silent_where_all_is_well(run):
+    for move in ("top=0,0,0.05", "top=0,0,0"):
+        ran = run(*DEFORM, "-o", "out.obj", "--width", "128", "--move", move, "--check", "--json", "--force")
+        assert json.loads(ran.out)["advice"] == []
+
+
+def test_check_tells_once_of_exact_control_points_that_cannot_arrive(run, here):
+    (here / "torn.csv").write_text(
+        "name,x,y,z,target_x,target_y,target_z\na,0,0,0,0,0,0\nb,0.01,0,0,3,0,0\nc,0,2,0,0,2,0\nd,1,2,1.5,1,2,1.5\n"
+    )
+    ran = run("deform", "shape.obj", "--points", "torn.csv", "-o", "out.obj", *QUICK, "--exact", "--check")
+    assert ran.code == 0
+    assert "stop short of their targets, at adherence 1: " in ran.err
+    assert "do not arrive exactly" not in ran.err

@@ -212,3 +212,20 @@ def test_data_that_is_not_where_it_should_be_is_refused(tmp_path, capsys, monkey
     assert main(["reproduce", "fig7", "-o", str(tmp_path / "new")]) == 1
     assert "$NEURALMLS_DATA: there is no folder" in capsys.readouterr().err
     assert not (tmp_path / "new").exists()
+
+
+def test_the_index_shows_in_a_browser_with_all_its_pictures(everything, browser, pictures):
+    folder, _ = everything
+    tab = browser.new_page(viewport={"width": 1280, "height": 720})
+    asked, errors = [], []
+    tab.on("request", lambda request: asked.append(request.url))
+    tab.on("pageerror", lambda error: errors.append(str(error)))
+    tab.goto((folder / "index.html").as_uri())
+    loaded = "image => { image.loading = 'eager'; return image.decode().then(() => image.naturalWidth) }"
+    sizes = tab.locator("img").evaluate_all(f"images => Promise.all(images.map({loaded}))")
+    tab.screenshot(path=pictures / "reproduce-index.png", full_page=True)
+    tab.close()
+    assert len(sizes) >= len(ITEMS)
+    assert all(size > 100 for size in sizes)
+    assert all(url.startswith(folder.as_uri()) for url in asked)
+    assert errors == []

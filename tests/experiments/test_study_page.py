@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
@@ -14,7 +13,7 @@ import pytest
 
 pytest.importorskip("pyvista", reason="the extra 'figures' is not installed")
 
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser
 
 from neuralmls.cli import main
 from neuralmls.experiments.methods import METHODS, neural
@@ -22,7 +21,6 @@ from neuralmls.experiments.study.build import Study, build
 from neuralmls.experiments.study.cases import cases
 from tests.experiments.study_of_boxes import METHODS_OF_BOXES, study_of_boxes
 
-OUT = Path(__file__).resolve().parents[2] / "out"
 KEYS = ["1", "2", "2", "1"]
 
 
@@ -84,19 +82,6 @@ def page_of_a_chair(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("chair") / "study.html"
     path.write_text(build(islice(cases(None), 1), methods=methods, height=400).page)
     return path
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    programs = ("chromium", "chromium-browser", "google-chrome")
-    installed = next(filter(None, map(shutil.which, programs)), None)
-    with sync_playwright() as playwright:
-        program = installed or playwright.chromium.executable_path
-        if not Path(program).exists():
-            pytest.skip("no Chromium: apt-get install chromium, or .venv/bin/playwright install chromium")
-        running = playwright.chromium.launch(executable_path=program)
-        yield running
-        running.close()
 
 
 @pytest.fixture
@@ -324,13 +309,12 @@ def test_questions_fit_on_the_screen(visit, width, height):
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize(("width", "height"), SIZES)
-def test_pictures_of_the_page_are_left_to_be_looked_at(visit, page_of_a_chair, scheme, width, height):
+def test_pictures_of_the_page_are_left_to_be_looked_at(visit, page_of_a_chair, pictures, scheme, width, height):
     visitor = visit(page_of_a_chair, seed=1, color_scheme=scheme)
     visitor.page.set_viewport_size({"width": width, "height": height})
-    OUT.mkdir(exist_ok=True)
     for screen, keys in (("welcome", []), ("question", ["Enter", "2"]), ("end", ["Enter"])):
         visitor.press(*keys)
         assert overflow(visitor) == [0, 0]
-        visitor.page.screenshot(path=OUT / f"study-{screen}-{width}x{height}-{scheme}.png")
+        visitor.page.screenshot(path=pictures / f"study-{screen}-{width}x{height}-{scheme}.png")
     ground = visitor.page.evaluate("() => getComputedStyle(document.body).backgroundColor")
     assert (sum(map(int, re.findall(r"\d+", ground))) < 384) == (scheme == "dark")

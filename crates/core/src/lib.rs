@@ -8,6 +8,7 @@
 //! | [`logits`] | weight functions: what each says of a point, before the softmax (inverse distance, neural) |
 //! | [`softmax`] | logits at a temperature -> weights, and the form of them that stays accurate however small T is |
 //! | [`mls`] | weights and moved control points -> a rigid, similarity or affine map a point |
+//! | [`placement`] | control points spread over a shape |
 //! | [`tree`] | a kd-tree over points, built once a shape |
 //! | [`memory`] | large arrays, made by all threads |
 //! | `simd` | one kernel, compiled for several instruction sets |
@@ -27,6 +28,7 @@ pub mod logits;
 pub mod memory;
 pub mod mls;
 mod parallel;
+pub mod placement;
 pub mod progress;
 mod simd;
 pub mod softmax;

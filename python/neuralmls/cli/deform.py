@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
@@ -40,6 +41,7 @@ TransformName: TypeAlias = Literal["rigid", "similarity", "affine"]
     help="Move a target, from where the file has it; may be repeated.",
 )
 @click.option("--exact", is_flag=True, help="Take the control points all the way to their targets, not only near them.")
+@click.option("--check", is_flag=True, help="Say where the result is likely bad, and what would help.")
 @options.json
 @options.quiet
 @click.option("--verbose", is_flag=True, help="Every control point in the summary.")
@@ -54,6 +56,7 @@ def deform(
     transform: TransformName,
     moves: Sequence[str],
     exact: bool,
+    check: bool,
     json: bool,
     quiet: bool,
     verbose: bool,
@@ -95,11 +98,17 @@ def deform(
         console.warning(sentence)
     result = deformation.deformed(source, control_points, choice, transform, temperature, stages, exact=exact)
     sentences = deformation.not_parted(control_points, choice, result)
-    if exact:
+    advice = []
+    if check:
+        with stages.stage("check"):
+            advice = deformation.advice(source, control_points, result, transform, temperature, exact=exact)
+    elif exact:  # which the advice says too
         sentences += deformation.not_arrived(control_points, source, result)
     for sentence in sentences:
         console.warning(sentence)
         warnings.append(sentence)
+    for item in advice:
+        console.warning(item.sentence)
     with stages.stage("write"):
         files, kept = _write(source, result, output, force=force)
     for sentence in kept:
@@ -107,6 +116,8 @@ def deform(
         warnings.append(sentence)
     told = summary.summary(source, control_points, choice, transform, temperature, result)
     told |= {"exact": exact, "output": str(output), "files": files, "warnings": warnings, "seconds": stages.seconds}
+    if check:
+        told["advice"] = [asdict(item) for item in advice]
     out = sys.stderr if to_stdout else sys.stdout
     if json:
         console.document(told, out)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from neuralmls.advice import Advice, advise
 from neuralmls.cli.stages import Stages
 from neuralmls.cli.weights import WeightsChoice
 from neuralmls.control_points import ControlPoints
@@ -130,3 +131,25 @@ def not_arrived(points: ControlPoints, shape: Shape, result: Deformation) -> lis
         f"control points do not arrive exactly: {listed}; their targets contradict each other under this transform: "
         "move them less, or try a lower temperature or --transform affine"
     ]
+
+
+def advice(
+    shape: Shape,
+    points: ControlPoints,
+    result: Deformation,
+    transform: Transform,
+    temperature: float,
+    *,
+    exact: bool,
+) -> list[Advice]:
+    """Return what is likely bad about the result, and what would help."""
+    return advise(
+        shape.positions,
+        shape.faces,
+        result.weights,
+        points.targets,
+        transform=transform,
+        temperature=temperature,
+        adherence=float(exact),
+        names=points.names,
+    )

@@ -1,7 +1,7 @@
 """The methods that experiments compare, each under one name and with one way to call it.
 
 >>> list(METHODS)
-['neural', 'shape-aware', 'classic', 'rbf', 'arap', 'biharmonic']
+['neural', 'neural-exact', 'shape-aware', 'classic', 'rbf', 'arap', 'biharmonic']
 >>> square = Surface(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]]))
 >>> METHODS["classic"](square, square.positions, square.positions + 1).tolist()[0]
 [1.0, 1.0, 1.0]
@@ -72,7 +72,12 @@ class Method:
 
 
 def neural(
-    title: str = "NeuralMLS", *, transform: Transform = "rigid", temperature: float = 1.0, **training: Any
+    title: str = "NeuralMLS",
+    *,
+    transform: Transform = "rigid",
+    temperature: float = 1.0,
+    adherence: float = 0.0,
+    **training: Any,
 ) -> Method:
     """The paper's weights, with the options of `Deformer` and of `NeuralWeights.fit` (steps, width, seed, ...)."""
 
@@ -80,7 +85,7 @@ def neural(
         bounds = np.stack([shape.positions.min(axis=0), shape.positions.max(axis=0)])
         return NeuralWeights.fit(p, bounds=bounds, **training)
 
-    return _of_weights(title, fitted, transform, temperature)
+    return _of_weights(title, fitted, transform, temperature, adherence)
 
 
 def shape_aware(title: str = "Shape-aware, exact", *, seed: int = 0) -> Method:
@@ -149,6 +154,7 @@ def _of_space(title: str, name: str, **options: Any) -> Method:
 
 METHODS: dict[str, Method] = {
     "neural": neural(),
+    "neural-exact": neural("NeuralMLS, exact", adherence=1.0),
     "shape-aware": shape_aware(),
     "classic": classic(),
     "rbf": _of_space(baselines.TITLES["rbf"], "rbf"),

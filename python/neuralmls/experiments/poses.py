@@ -27,6 +27,7 @@ MOST = 6  # poses of a file, spread evenly over it
 POSE_METHODS: dict[str, Method] = METHODS | {
     "classic": classic("Classic MLS, 1/d^4", alpha=2.0),
     "neural": neural("NeuralMLS, 200 steps", steps=200),
+    "neural-exact": neural("NeuralMLS, 200 steps, exact", steps=200, adherence=1.0),
 }
 
 QUICK = ("rbf", "classic", "neural", "shape-aware", "arap")  # biharmonic weights take ten times as long

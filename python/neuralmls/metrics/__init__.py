@@ -9,7 +9,7 @@ What is no such array, or does not fit the others, is an `ArgumentError` that sa
 
 from neuralmls.metrics.curvature import Change, curvature_change, laplacian, mean_curvature
 from neuralmls.metrics.flips import Flips, flipped_triangles
-from neuralmls.metrics.folds import folded_places
+from neuralmls.metrics.folds import beside, folded_places, jacobians
 from neuralmls.metrics.handles import handle_errors
 from neuralmls.metrics.measures import Measures, measure
 from neuralmls.metrics.strains import Strain, singular_values, strain
@@ -20,10 +20,12 @@ __all__ = [
     "Flips",
     "Measures",
     "Strain",
+    "beside",
     "curvature_change",
     "flipped_triangles",
     "folded_places",
     "handle_errors",
+    "jacobians",
     "laplacian",
     "mean_curvature",
     "measure",

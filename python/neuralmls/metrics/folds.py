@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,12 +37,25 @@ def folded_places(f: Callable[[Array], Array], x: ArrayLike, *, step: float) -> 
     """
     points = as_points("x", x)
     h = as_number("step", step, 0)
-    columns = []
-    for axis in range(points.shape[1]):
-        shift = np.zeros(points.shape[1])
-        shift[axis] = h
-        ends = [as_points("f(x)", f(points + way * shift), points.shape[1]) for way in (1, -1)]
-        if len(ends[0]) != len(points):
-            raise ArgumentError(f"f(x): expected {len(points)} points, found {len(ends[0])}")
-        columns.append((ends[0] - ends[1]) / (2 * h))
-    return int((np.linalg.det(np.stack(columns, axis=2)) <= 0).sum())
+    values = [as_points("f(x)", f(place), points.shape[1]) for place in beside(points, h)]
+    if len(values[0]) != len(points):
+        raise ArgumentError(f"f(x): expected {len(points)} points, found {len(values[0])}")
+    return int((np.linalg.det(jacobians(values, h)) <= 0).sum())
+
+
+def beside(x: Array, step: float) -> list[Array]:
+    """The points `step` up and down each axis from each of `x` (n, d), 2 d arrays: where `jacobians` wants values."""
+    return [x + way * shift for shift in step * np.eye(x.shape[1]) for way in (1, -1)]
+
+
+def jacobians(values: Sequence[Array], step: float) -> Array:
+    """The Jacobians (n, d, d) of a map by central differences of its values at the points `beside` each point.
+
+    Examples
+    --------
+    >>> double = [2 * x for x in beside(np.zeros((1, 2)), 0.1)]
+    >>> jacobians(double, 0.1).round(9).tolist()
+    [[[2.0, 0.0], [0.0, 2.0]]]
+    """
+    columns = [(up - down) / (2 * step) for up, down in zip(values[::2], values[1::2], strict=True)]
+    return np.stack(columns, axis=2)

@@ -73,8 +73,9 @@ COLUMNS = {
 
 
 def rivals(lab: Lab, subject: Subject) -> dict[str, Method]:
-    """The methods of the paper's comparison, with KeypointDeformer where its published weights know the shape."""
+    """The methods of the paper's comparison, KeypointDeformer where its weights know the shape, and exact handles."""
     choice = {"neural": methods.neural(steps=48, width=lab.width), "classic MLS": methods.classic()}
+    choice["neural, exact"] = methods.neural(steps=48, width=lab.width, adherence=1.0)
     choice["ARAP"] = methods.METHODS["arap"]
     weights = None if subject.ours or subject.name != "airplane" else lab.keypoint_weights("airplane")
     if weights is not None:

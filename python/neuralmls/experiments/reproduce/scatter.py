@@ -9,7 +9,7 @@ from neuralmls.experiments.reproduce.report import Claim, Picture, Report
 from neuralmls.experiments.reproduce.subjects import many
 
 MARKS = {"chair": "o", "airplane": "^", "car": "s", "table": "D"}  # a star for anything else
-METHODS = ("neural", "classic MLS", "KeypointDeformer", "ARAP")
+METHODS = ("neural", "classic MLS", "KeypointDeformer", "ARAP", "neural, exact")
 
 
 def run(lab: Lab) -> Report:

@@ -1,0 +1,146 @@
+//! Weights, and points bound to them.
+
+use js_sys::{Array, Float32Array, Float64Array};
+use neuralmls_core::progress::Progress;
+use neuralmls_core::{Deformer, Error, InverseDistance, PointTree, Transform};
+use wasm_bindgen::prelude::*;
+
+use crate::refused;
+
+enum Function {
+    Neural(Box<neuralmls_core::Fit>),
+    Classic(InverseDistance),
+}
+
+/// A weight function of control points.
+#[wasm_bindgen]
+pub struct Weights {
+    p: Vec<f64>,
+    function: Function,
+}
+
+#[wasm_bindgen]
+impl Weights {
+    /// Mean cross-entropy after the training; undefined for classic weights.
+    pub fn loss(&self) -> Option<f64> {
+        match &self.function {
+            Function::Neural(fit) => Some(fit.loss),
+            Function::Classic(_) => None,
+        }
+    }
+
+    /// Steps that were trained.
+    pub fn steps(&self) -> usize {
+        match &self.function {
+            Function::Neural(fit) => fit.losses.len(),
+            Function::Classic(_) => 0,
+        }
+    }
+}
+
+impl Weights {
+    pub(crate) fn neural(p: Vec<f64>, fit: neuralmls_core::Fit) -> Weights {
+        Weights { p, function: Function::Neural(Box::new(fit)) }
+    }
+
+    pub(crate) fn classic(p: Vec<f64>, function: InverseDistance) -> Weights {
+        Weights { p, function: Function::Classic(function) }
+    }
+
+    pub(crate) fn is_neural(&self) -> bool {
+        matches!(self.function, Function::Neural(_))
+    }
+
+    /// At the points `x`, which `tree` (if any) holds too.
+    fn logits(
+        &self,
+        x: &[f64],
+        tree: Option<&PointTree>,
+        progress: &mut Progress<'_>,
+    ) -> Result<Vec<f32>, Error> {
+        match (&self.function, tree) {
+            (Function::Neural(fit), Some(tree)) => fit.network.logits_of_tree(tree, progress),
+            (Function::Neural(fit), None) => fit.network.logits(x, progress),
+            (Function::Classic(function), _) => function.logits(x, progress),
+        }
+    }
+}
+
+/// The points of a shape, and the control points themselves, bound to weights.
+#[wasm_bindgen]
+pub struct Fit {
+    points: Deformer,
+    control_points: Deformer,
+}
+
+#[wasm_bindgen]
+impl Fit {
+    /// The logits of the points, n x m.
+    pub fn logits(&self) -> Float32Array {
+        Float32Array::from(self.points.logits())
+    }
+
+    /// The logits at the control points' own places, m x m.
+    pub fn own_logits(&self) -> Float32Array {
+        Float32Array::from(self.control_points.logits())
+    }
+
+    /// Where the control points land when they are pulled to `q` (m x dim).
+    ///
+    /// # Errors
+    /// Where `q` does not fit, or the temperature is not above 0.
+    pub fn land(&mut self, q: &[f64], transform: &str, temperature: f64) -> Result<Float64Array, JsError> {
+        self.control_points.set_transform(named(transform)?);
+        let landed = self.control_points.deform(q, temperature, false, &mut |_| true).map_err(refused)?;
+        Ok(Float64Array::from(&landed.positions[..]))
+    }
+
+    /// The points' new positions (n x dim), then their maps (n x dim x dim) if `maps`.
+    ///
+    /// # Errors
+    /// As [`Fit::land`].
+    pub fn deform(
+        &mut self,
+        q: &[f64],
+        transform: &str,
+        temperature: f64,
+        maps: bool,
+        tell: &js_sys::Function,
+    ) -> Result<Array, JsError> {
+        self.points.set_transform(named(transform)?);
+        let deformed =
+            self.points.deform(q, temperature, maps, &mut crate::reporter(tell)).map_err(refused)?;
+        let result = Array::of1(&Float64Array::from(&deformed.positions[..]));
+        if let Some(maps) = deformed.maps {
+            result.push(&Float64Array::from(&maps[..]));
+        }
+        Ok(result)
+    }
+}
+
+impl Fit {
+    pub(crate) fn new(
+        weights: &Weights,
+        x: &[f64],
+        dim: usize,
+        tree: Option<&PointTree>,
+        progress: &mut Progress<'_>,
+    ) -> Result<Fit, Error> {
+        let p = &weights.p;
+        let own = weights.logits(p, None, &mut |_| true)?;
+        let logits = weights.logits(x, tree, progress)?;
+        Ok(Fit {
+            points: Deformer::new(x.to_vec(), dim, p, logits, Transform::Rigid)?,
+            control_points: Deformer::new(p.clone(), dim, p, own, Transform::Rigid)?,
+        })
+    }
+}
+
+fn named(transform: &str) -> Result<Transform, JsError> {
+    match transform {
+        "rigid" => Ok(Transform::Rigid),
+        "similarity" => Ok(Transform::Similarity),
+        "affine" => Ok(Transform::Affine),
+        other => Err(refused(format!("transform: expected rigid, similarity or affine, found {other}"))),
+    }
+}

@@ -1,0 +1,345 @@
+/** What a person can do besides editing: open, save, place control points, take up earlier work. */
+
+import { addPoints, type Command, type History, load, placeAnew } from "../commands/index.ts";
+import { areFarAway, formatSession, parseSession } from "../model/controlPointFile.ts";
+import { EMPTY_SESSION, isMoved, type Session } from "../model/session.ts";
+import { pointAt } from "../model/vec3.ts";
+import { DEFAULT_VIEW, type View } from "../model/view.ts";
+import type { Autosave } from "../storage/autosave.ts";
+import type { Core, Files, OnProgress, Opened } from "../worker/protocol.ts";
+import { servedSession } from "../worker/served.ts";
+import type { Display } from "./display.ts";
+import { download, extensionOf, readAll, sort, stemOf } from "./files.ts";
+import type { Sample, State, Toast } from "./state.ts";
+import type { Store } from "./store.ts";
+import { isAbort, Weights } from "./weights.ts";
+
+const STAGES = {
+  read: "Reading",
+  train: "Fitting the weights",
+  evaluate: "Evaluating the weights",
+  deform: "Bending",
+  write: "Writing",
+} as const;
+
+/** The panels follow a drag at this distance: more often would cost more than it tells. */
+const PANEL_MILLISECONDS = 100;
+const AUTOSAVE_MILLISECONDS = 400;
+const TOAST_MILLISECONDS = 7000;
+
+export class App {
+  readonly history: History;
+  readonly store: Store<State>;
+  readonly display: Display;
+  readonly #core: Core;
+  readonly #autosave: Autosave;
+  readonly #weights: Weights;
+  #toasts = 0;
+  #telling: ReturnType<typeof setTimeout> | undefined;
+  #autosaving: ReturnType<typeof setTimeout> | undefined;
+  #opening: AbortController | undefined;
+
+  constructor(core: Core, autosave: Autosave, history: History, store: Store<State>, display: Display) {
+    [this.#core, this.#autosave, this.history, this.store, this.display] = [core, autosave, history, store, display];
+    this.#weights = new Weights(core, history, store, (slot, weights) => display.setWeights(slot, weights));
+    this.#weights.showFrame = (positions, maps) => display.showFrame(positions, maps);
+    this.#weights.onWarning = (text) => this.toast("warning", text);
+    history.subscribe(() => this.#publish());
+  }
+
+  /** Does a command. */
+  do(command: Command): void {
+    this.history.execute(command);
+  }
+
+  setView(change: Partial<View>): void {
+    const view = { ...this.store.value.view, ...change };
+    this.store.set({ view });
+    this.display.setView(view);
+  }
+
+  /** Looks for what is to be opened at once, for samples, and for earlier work. */
+  async start(samples: Promise<Sample[]>): Promise<void> {
+    try {
+      this.store.set({ samples: await samples });
+    } catch {
+      // A copy of the editor without samples works as well.
+    }
+    await this.#guarded(async () => {
+      const served = await servedSession();
+      if (!served) return this.offerRecovery();
+      await this.#openShape(served.files, served.name);
+      if (served.points) this.#openPoints(served.points.name, served.points.text);
+      this.display.focus("all");
+    });
+  }
+
+  // Opening
+
+  async openFiles(list: readonly File[]): Promise<void> {
+    if (list.length === 0) return;
+    await this.#guarded(async () => this.openBytes(await readAll(list)));
+  }
+
+  async openBytes(files: Files): Promise<void> {
+    const { shape, points } = sort(files);
+    if (shape !== undefined) await this.#openShape(files, shape);
+    else if (points === undefined) {
+      throw new Error(`${[...files.keys()].join(", ")}: expected a shape (OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV, NPY) or control points (JSON, CSV)`);
+    }
+    if (points !== undefined) this.#openPoints(points, textOf(points, files.get(points) as Uint8Array));
+    if (shape !== undefined) this.display.focus("all");
+  }
+
+  async openSample(sample: Sample): Promise<void> {
+    await this.#guarded(async () => {
+      const names = [sample.file, ...sample.materials, ...(sample.points ? [sample.points] : [])];
+      const fetched = names.map(async (name) => [name, await fetchBytes(`./samples/${name}`)] as const);
+      await this.openBytes(new Map(await Promise.all(fetched)));
+    });
+  }
+
+  async #openShape(files: Files, name: string): Promise<void> {
+    await this.#busy(`Reading ${name}`, async (progress, signal) => {
+      const opened = await this.#core.open(files, name, { progress, signal });
+      this.#weights.forget();
+      const { hasAppearance } = await this.display.showShape(opened, files);
+      this.store.set({ shape: { opened, files, hasAppearance }, recovery: null, toasts: [] });
+      this.setView({ ...DEFAULT_VIEW, adding: this.store.value.view.adding });
+      this.history.reset(EMPTY_SESSION);
+      for (const warning of opened.warnings) this.toast("warning", warning);
+      await this.#keep(() => this.#autosave.saveShape(name, files));
+    });
+  }
+
+  #openPoints(name: string, text: string): void {
+    const { shape } = this.store.value;
+    if (!shape) throw new Error(`${name}: these are control points; open the shape that they belong to first`);
+    let session: Session;
+    try {
+      session = parseSession(text, shape.opened.dim);
+    } catch (error) {
+      throw new Error(`${name}: ${messageOf(error)}`);
+    }
+    this.do(load(session));
+    const { centre, half } = shape.opened.frame;
+    if (areFarAway(session, centre, half)) {
+      this.toast("warning", `${name}: some control points are far away from the shape; are they another one's?`);
+    }
+  }
+
+  // Control points
+
+  /** Spreads control points over the shape; those that are neither moved nor locked give way to them. */
+  async place(count: number): Promise<void> {
+    await this.#guarded(async () => {
+      const most = this.store.value.shape?.opened.count ?? 0;
+      const flat = await this.#core.farthestPoints(Math.min(count, most));
+      const places = Array.from({ length: flat.length / 3 }, (_, i) => {
+        const position = pointAt(flat, i);
+        return { position, target: position };
+      });
+      this.do(this.history.session.points.length > 0 ? placeAnew(places) : addPoints(places));
+    });
+  }
+
+  // Saving
+
+  /** The shape's file, bent, by the core's result. */
+  async saveShape(): Promise<void> {
+    await this.#withShape("Saving", async (opened, progress, signal) => {
+      await this.#weights.settled();
+      const { session } = this.history;
+      if (session.points.length > 0) this.#failIfUnfitted();
+      const motion = session.points.some(isMoved) ? this.#weights.motion(session) : null;
+      const name = `${stemOf(opened.name)}-bent.${extensionOf(opened.name) || opened.extensions[0]}`;
+      const { files } = await this.#core.save(name, motion, { progress, signal });
+      for (const file of files) download(file.name, new Blob([file.bytes]));
+      this.toast("done", motion ? `Saved ${files.map((file) => file.name).join(" and ")}` : `Saved ${name}, which is the file as it was: nothing is moved`);
+    });
+  }
+
+  /** The control points and all settings, as `neuralmls deform --points` reads them. */
+  async savePoints(): Promise<void> {
+    await this.#withShape("Saving", (opened) => {
+      const { session } = this.history;
+      if (session.points.length === 0) throw new Error("There are no control points to save yet: click on the shape to add one.");
+      const name = `${stemOf(opened.name)}.json`;
+      download(name, new Blob([formatSession(session, opened.dim)], { type: "application/json" }));
+      this.toast("done", `Saved ${name}`);
+    });
+  }
+
+  async savePicture(): Promise<void> {
+    await this.#withShape("Saving", async (opened) => {
+      download(`${stemOf(opened.name)}.png`, await this.display.picture());
+    });
+  }
+
+  /** A GLB of the shape at rest, with the deformed one as a morph target. */
+  async saveMorphTarget(): Promise<void> {
+    await this.#withShape("Saving", async (opened, progress, signal) => {
+      await this.#weights.settled();
+      this.#failIfUnfitted();
+      const motion = this.#weights.motion(this.history.session);
+      if (!motion) throw new Error("There are no control points yet: a morph target needs a deformation.");
+      const deformed = await this.#core.deform(motion, { progress, signal });
+      const bytes = await this.display.morphTarget(deformed);
+      download(`${stemOf(opened.name)}-morph.glb`, new Blob([bytes], { type: "model/gltf-binary" }));
+      this.toast("done", `Saved ${stemOf(opened.name)}-morph.glb`);
+    });
+  }
+
+  /** A page that anyone can open offline and drag. */
+  async savePage(): Promise<void> {
+    await this.#withShape("Saving", async (opened) => {
+      await this.#weights.settled();
+      this.#failIfUnfitted();
+      const html = await this.display.page(stemOf(opened.name));
+      download(`${stemOf(opened.name)}.html`, new Blob([html], { type: "text/html" }));
+      this.toast("done", `Saved ${stemOf(opened.name)}.html (${(html.length / 1e6).toFixed(1)} MB)`);
+    });
+  }
+
+  // Earlier work
+
+  /** Offers the work of an earlier visit, if there is any. */
+  async offerRecovery(): Promise<void> {
+    await this.#keep(async () => {
+      const work = await this.#autosave.load();
+      if (!work || this.store.value.shape) return;
+      this.store.set({ recovery: { name: work.name, when: work.when, points: work.session.points.length } });
+    });
+  }
+
+  async recover(): Promise<void> {
+    await this.#guarded(async () => {
+      const work = await this.#autosave.load();
+      if (!work) return;
+      await this.#openShape(work.files, work.name);
+      this.history.reset(work.session);
+      this.setView({ ...work.view, before: false });
+    });
+  }
+
+  async forgetRecovery(): Promise<void> {
+    this.store.set({ recovery: null });
+    await this.#keep(() => this.#autosave.clear());
+  }
+
+  // Telling
+
+  toast(kind: Toast["kind"], text: string): void {
+    const id = ++this.#toasts;
+    const toast = { id, kind, text: sentence(text) };
+    const others = this.store.value.toasts.filter((other) => other.text !== toast.text);
+    this.store.set({ toasts: [...others, toast].slice(-4) });
+    if (kind !== "error") setTimeout(() => this.dismiss(id), TOAST_MILLISECONDS);
+  }
+
+  dismiss(id: number): void {
+    this.store.set({ toasts: this.store.value.toasts.filter((toast) => toast.id !== id) });
+  }
+
+  /** Tells the panels; not within a frame of a drag. */
+  #publish(): void {
+    if (!this.history.inGesture) this.#tell();
+    else this.#telling ??= setTimeout(() => this.#tell(), PANEL_MILLISECONDS);
+  }
+
+  #tell(): void {
+    clearTimeout(this.#telling);
+    this.#telling = undefined;
+    const { session, undoLabel, redoLabel } = this.history;
+    this.store.set({ session, undoLabel, redoLabel });
+    if (this.history.inGesture || !this.store.value.shape) return;
+    clearTimeout(this.#autosaving);
+    this.#autosaving = setTimeout(() => void this.#saveSession(), AUTOSAVE_MILLISECONDS);
+  }
+
+  async #saveSession(): Promise<void> {
+    await this.#keep(async () => {
+      await this.#autosave.saveSession(this.history.session, this.store.value.view);
+      this.store.set({ autosaved: new Date() });
+    });
+  }
+
+  /** What the browser does not let us keep (private windows, a full disk) is told once, and hinders nothing. */
+  async #keep(what: () => Promise<void>): Promise<void> {
+    try {
+      await what();
+    } catch {
+      if (!this.#told) this.toast("warning", "The browser does not keep this work: save it before you close the tab.");
+      this.#told = true;
+    }
+  }
+
+  #told = false;
+
+  #failIfUnfitted(): void {
+    const { fit } = this.store.value;
+    if (fit.status === "failed") throw new Error(fit.reason);
+    if (fit.status === "none") throw new Error("There are no control points yet: click on the shape to add one.");
+  }
+
+  async #withShape(
+    label: string,
+    what: (opened: Opened, progress: OnProgress, signal: AbortSignal) => Promise<void> | void,
+  ): Promise<void> {
+    const { shape } = this.store.value;
+    if (!shape) return this.toast("error", "There is no shape yet: open one first.");
+    await this.#guarded(() => this.#busy(label, async (progress, signal) => what(shape.opened, progress, signal)));
+  }
+
+  async #busy(label: string, what: (progress: OnProgress, signal: AbortSignal) => Promise<void>): Promise<void> {
+    this.#opening?.abort();
+    const controller = new AbortController();
+    this.#opening = controller;
+    const cancel = (): void => controller.abort();
+    this.store.set({ busy: { label, fraction: null, cancel } });
+    try {
+      await what((stage, fraction) => {
+        if (this.#opening === controller) this.store.set({ busy: { label: STAGES[stage], fraction, cancel } });
+      }, controller.signal);
+    } finally {
+      if (this.#opening === controller) {
+        this.#opening = undefined;
+        this.store.set({ busy: null });
+      }
+    }
+  }
+
+  async #guarded(what: () => Promise<void>): Promise<void> {
+    try {
+      await what();
+    } catch (error) {
+      if (!isAbort(error)) this.toast("error", messageOf(error));
+    }
+  }
+}
+
+const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
+
+const sentence = (text: string): string => {
+  const capital = /^[a-z]+[ :']/.test(text) && !/^\S+\.\w+:/.test(text) ? text[0].toUpperCase() + text.slice(1) : text;
+  return /[.!?]$/.test(capital) ? capital : `${capital}.`;
+};
+
+function textOf(name: string, bytes: Uint8Array): string {
+  try {
+    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+  } catch {
+    throw new Error(`${name}: expected UTF-8 text`);
+  }
+}
+
+async function fetchBytes(url: string): Promise<Uint8Array> {
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${url} could not be loaded (${response.status}).`);
+  return new Uint8Array(await response.arrayBuffer());
+}
+
+/** The samples that were built with the editor. */
+export async function fetchSamples(): Promise<Sample[]> {
+  return JSON.parse(new TextDecoder().decode(await fetchBytes("./samples/index.json"))) as Sample[];
+}

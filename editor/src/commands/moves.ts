@@ -1,0 +1,77 @@
+/** Moves of control points: of their targets (a drag), or of their places at rest (which asks for a new fit). */
+
+import { mirrorVector, twinOf } from "../model/mirror.ts";
+import { type ControlPoint, find, type Moves, type PointId, type Session } from "../model/session.ts";
+import { add, equal, subtract, type Vec3 } from "../model/vec3.ts";
+import type { Command } from "./history.ts";
+import { change } from "./points.ts";
+
+/** Moves the selected control points to where `to` takes their targets (or places). Twins follow, locked ones stay. */
+export function moveSelected(session: Session, moves: Moves, to: (place: Vec3) => Vec3): Session {
+  const axis = session.settings.mirror;
+  // A twin of the leader follows it even if it is selected too.
+  const followers = new Set<PointId>();
+  const led = [...session.selection].reverse().filter((id) => {
+    if (followers.has(id)) return false;
+    const twin = axis === null ? undefined : twinOf(session, id);
+    if (twin !== undefined) followers.add(twin);
+    return true;
+  });
+  let next = change(session, led, (point) => movedTo(point, moves, to(point[moves])));
+  if (axis === null) return next;
+  for (const id of led) {
+    const [twin, before, after] = [twinOf(session, id), find(session, id), find(next, id)];
+    if (twin === undefined || !before || !after || before === after) continue;
+    next = change(next, [twin], (point) => {
+      const by = mirrorVector(
+        // Targets mirror the whole displacement, so that twins that had parted come together again.
+        moves === "target" ? subtract(after.target, after.position) : subtract(after.position, before.position),
+        axis,
+      );
+      return movedTo(point, moves, add(point.position, by));
+    });
+  }
+  return next;
+}
+
+function movedTo(point: ControlPoint, moves: Moves, place: Vec3): ControlPoint {
+  if (point.locked || equal(point[moves], place)) return point;
+  if (moves === "target") return { ...point, target: place };
+  // Its displacement stays as it is.
+  return { ...point, position: place, target: add(point.target, subtract(place, point.position)) };
+}
+
+/** Moves the selected control points by `by`. */
+export function nudge(moves: Moves, by: Vec3): Command {
+  return {
+    label: "Nudge",
+    mergeKey: `nudge ${moves}`,
+    apply: (session) => moveSelected(session, moves, (place) => add(place, by)),
+  };
+}
+
+/** Puts the target (or place) of one control point at a place that was typed. */
+export function put(id: PointId, moves: Moves, place: Vec3): Command {
+  return {
+    label: "Move",
+    apply(session) {
+      if (!place.every(Number.isFinite)) return session;
+      if (moves === "position" && session.points.some((other) => other.id !== id && equal(other.position, place))) {
+        return session;
+      }
+      const moved = moveSelected({ ...session, selection: [id] }, moves, () => place);
+      return moved.points === session.points ? session : { ...moved, selection: session.selection };
+    },
+  };
+}
+
+/** Takes control points back to their places at rest: the selected ones, or all. Locked ones stay where they are. */
+export function resetTargets(which: "selected" | "all"): Command {
+  return {
+    label: "Reset",
+    apply(session) {
+      const ids = which === "all" ? session.points.map((point) => point.id) : session.selection;
+      return change(session, ids, (point) => movedTo(point, "target", point.position));
+    },
+  };
+}

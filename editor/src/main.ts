@@ -1,0 +1,82 @@
+/** Joins the layers: core, application, view and panels. */
+
+import { createElement, render } from "preact";
+import { App, fetchSamples } from "./app/app.ts";
+import type { Display } from "./app/display.ts";
+import { INITIAL_STATE, type Theme } from "./app/state.ts";
+import { Store } from "./app/store.ts";
+import { History } from "./commands/index.ts";
+import { morphTarget } from "./exports/morphTarget.ts";
+import { page } from "./exports/page.ts";
+import { EMPTY_SESSION } from "./model/session.ts";
+import { listenToKeys } from "./panels/actions.ts";
+import { listenToDrops } from "./panels/drops.ts";
+import { Root } from "./panels/Root.tsx";
+import { Autosave } from "./storage/autosave.ts";
+import "./styles.css";
+import { draw } from "./viewport/drawn.ts";
+import { Viewport } from "./viewport/viewport.ts";
+import { createCore } from "./worker/client.ts";
+
+const THEME_KEY = "neuralmls-theme";
+
+const history = new History(EMPTY_SESSION);
+const store = new Store({ ...INITIAL_STATE, theme: (localStorage.getItem(THEME_KEY) ?? "system") as Theme });
+const host = document.createElement("div");
+host.className = "canvas-host";
+const root = document.getElementById("app") as HTMLElement;
+const viewport = startViewport();
+
+function startViewport(): Viewport {
+  try {
+    return new Viewport(host, history, store.value.view);
+  } catch (error) {
+    root.textContent = "The editor needs WebGL 2, which this browser does not offer here: another one, or another graphics driver, may.";
+    throw error;
+  }
+}
+
+const display: Display = {
+  async showShape(opened, files) {
+    const { drawn, mesh, hasAppearance } = await draw(opened, files);
+    viewport.setShape(drawn, opened.frame, opened.dim, mesh);
+    return { hasAppearance };
+  },
+  setWeights: (slot, weights) => viewport.setWeights(slot, weights),
+  showFrame: (positions, maps) => viewport.showFrame(positions, maps),
+  setView: (view) => viewport.setView(view),
+  focus: (what) => viewport.focus(what),
+  cancel: () => viewport.cancel(),
+  picture: () => viewport.picture(),
+  async morphTarget({ positions }) {
+    if (!viewport.drawn) throw new Error("There is no shape yet.");
+    return morphTarget(viewport.drawn, viewport.box, positions);
+  },
+  async page(title) {
+    const { drawn, bound } = viewport;
+    if (!drawn || !bound) throw new Error("There are no control points yet.");
+    return page(title, drawn, viewport.box, store.value.shape?.opened.dim ?? 3, bound, history.session);
+  },
+};
+
+const core = createCore();
+const app = new App(core, new Autosave(), history, store, display);
+store.subscribe(({ theme }, before) => {
+  if (theme !== before.theme) localStorage.setItem(THEME_KEY, theme);
+});
+render(createElement(Root, { app, host }), root);
+viewport.stage.renderer.domElement.addEventListener("webglcontextlost", () => {
+  app.toast("error", "The browser has lost the graphics card: reload the page, your work is kept.");
+});
+listenToKeys(app);
+listenToDrops(app);
+void app.start(fetchSamples());
+
+/** For tests and for the curious: what the GPU shows, in the order and the units of the file, and what is known of it. */
+Object.assign(globalThis, {
+  neuralmls: {
+    readback: () => viewport.readback(),
+    screenOf: (place: [number, number, number]) => viewport.screenOf(place),
+    state: () => store.value,
+  },
+});

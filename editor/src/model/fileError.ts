@@ -1,0 +1,12 @@
+/** What was wrong with a file, in one sentence for a person. */
+export class FileError extends Error {
+  override name = "FileError";
+}
+
+/** A control point as it was read: as many coordinates as the file has. */
+export interface RawEntry {
+  name: string;
+  position: number[];
+  target: number[];
+  locked?: boolean;
+}

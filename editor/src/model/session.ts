@@ -1,0 +1,64 @@
+/** A session: the control points and all that is set. Never changed in place, so that undo is to take the former one. */
+
+import { DEFAULT_SETTINGS, type Settings } from "./settings.ts";
+import { equal, type Vec3 } from "./vec3.ts";
+
+export type PointId = number;
+
+/** A control point: where it is at rest (p) and where it is moved to (q), in the units of the shape's file. */
+export interface ControlPoint {
+  readonly id: PointId;
+  readonly name: string;
+  readonly position: Vec3;
+  readonly target: Vec3;
+  /** It stays where it is: moves pass it over. */
+  readonly locked: boolean;
+}
+
+/** What a move moves: where control points are moved to, or where they are at rest. */
+export type Moves = "target" | "position";
+
+/** Two control points of which a move of one moves the other, mirrored. */
+export type Pair = readonly [PointId, PointId];
+
+export interface Session {
+  readonly points: readonly ControlPoint[];
+  /** The last one leads: numbers are shown for it, and its twin follows it. */
+  readonly selection: readonly PointId[];
+  readonly pairs: readonly Pair[];
+  readonly settings: Settings;
+}
+
+export const EMPTY_SESSION: Session = { points: [], selection: [], pairs: [], settings: DEFAULT_SETTINGS };
+
+export const isMoved = (point: ControlPoint): boolean => !equal(point.position, point.target);
+
+export function find(session: Session, id: PointId): ControlPoint | undefined {
+  return session.points.find((point) => point.id === id);
+}
+
+/** The selected control points in the order of the list. */
+export function selected(session: Session): ControlPoint[] {
+  const ids = new Set(session.selection);
+  return session.points.filter((point) => ids.has(point.id));
+}
+
+/** The selected control point that leads. */
+export function leader(session: Session): ControlPoint | undefined {
+  const last = session.selection.at(-1);
+  return last === undefined ? undefined : find(session, last);
+}
+
+export function nextId(session: Session): PointId {
+  return session.points.reduce((most, point) => Math.max(most, point.id), 0) + 1;
+}
+
+/** The first of p1, p2 ... that are free. */
+export function freeNames(session: Session, count: number): string[] {
+  const taken = new Set(session.points.map((point) => point.name));
+  const names: string[] = [];
+  for (let i = 1; names.length < count; i++) {
+    if (!taken.has(`p${i}`)) names.push(`p${i}`);
+  }
+  return names;
+}

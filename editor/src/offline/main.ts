@@ -1,0 +1,54 @@
+/** The program of a page that is dragged offline (exports/page.ts): the view and the history of the editor, without its panels. */
+
+import { History, resetTargets, set } from "../commands/index.ts";
+import { type Bundle, decodeFloats, decodeIndices, unpackMaterial } from "../exports/bundle.ts";
+import { DEFAULT_VIEW } from "../model/view.ts";
+import { Viewport } from "../viewport/viewport.ts";
+
+const COLDEST = 0.05;
+const HOTTEST = 10;
+const STEPS = 400;
+
+const element = <T extends HTMLElement>(id: string): T => document.getElementById(id) as T;
+const bundle = JSON.parse(element("bundle").textContent ?? "") as Bundle;
+
+const history = new History(bundle.session);
+const viewport = new Viewport(element("view"), history, { ...DEFAULT_VIEW, adding: false });
+viewport.setShape(
+  {
+    rest: {
+      positions: decodeFloats(bundle.positions),
+      normals: decodeFloats(bundle.normals),
+      points: decodeIndices(bundle.points),
+    },
+    index: bundle.index === null ? null : decodeIndices(bundle.index),
+    ...(bundle.uv !== null && { uv: decodeFloats(bundle.uv) }),
+    ...(bundle.colours !== null && { colours: decodeFloats(bundle.colours) }),
+    groups: bundle.groups,
+    materials: bundle.materials.map((material) => unpackMaterial(material, () => viewport.invalidate())),
+  },
+  bundle.box,
+  bundle.dim,
+  undefined,
+);
+viewport.setWeights("main", { ids: bundle.ids, p: Float64Array.from(bundle.p), logits: decodeFloats(bundle.logits) });
+
+const temperature = element<HTMLInputElement>("temperature");
+const show = (): void => {
+  temperature.value = String((STEPS * Math.log(history.session.settings.temperature / COLDEST)) / Math.log(HOTTEST / COLDEST));
+};
+temperature.addEventListener("input", () => {
+  history.execute(set("temperature", COLDEST * (HOTTEST / COLDEST) ** (Number(temperature.value) / STEPS)));
+});
+temperature.addEventListener("change", () => history.seal());
+element("undo").addEventListener("click", () => history.undo());
+element("reset").addEventListener("click", () => history.execute(resetTargets("all")));
+history.subscribe(show);
+show();
+window.addEventListener("keydown", (event) => {
+  const key = event.key.toLowerCase();
+  if (key === "escape") viewport.cancel();
+  else if ((event.ctrlKey || event.metaKey) && key === "z") event.shiftKey ? history.redo() : history.undo();
+  else return;
+  event.preventDefault();
+});

@@ -1,0 +1,147 @@
+import { useEffect, useRef } from "preact/hooks";
+import { GESTURES, SHORTCUTS } from "./actions.ts";
+import { Button } from "./controls.tsx";
+import { Icon } from "./icons.tsx";
+import { useApp, useAppState } from "./useStore.ts";
+
+/** What is seen before there is a shape. */
+export function Empty() {
+  const app = useApp();
+  const { shape, samples, recovery, busy } = useAppState();
+  if (shape || busy) return null;
+  return (
+    <div class="empty">
+      <div class="card">
+        <svg class="drop-picture" viewBox="0 0 120 80" aria-hidden="true">
+          <path d="M10 62C30 8 52 10 60 40s30 30 50-24" />
+          <circle cx="10" cy="62" r="6" />
+          <circle cx="60" cy="40" r="6" class="middle" />
+          <circle cx="110" cy="16" r="6" />
+        </svg>
+        <h2>Drop a shape here</h2>
+        <p>
+          OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV or NPY, with its materials and textures.
+          <br />
+          It stays in your browser: nothing is uploaded.
+        </p>
+        <Button primary icon="open" label="Open a file" onClick={() => document.getElementById("open-files")?.click()} />
+        {samples.length > 0 && (
+          <div class="samples">
+            <span>or try</span>
+            {samples.map((sample) => (
+              <button type="button" class="button" key={sample.name} onClick={() => void app.openSample(sample)}>
+                {sample.title}
+              </button>
+            ))}
+          </div>
+        )}
+        {recovery && (
+          <div class="recovery" role="alert">
+            <span>
+              Work from {recovery.when.toLocaleString([], { dateStyle: "medium", timeStyle: "short" })} is still here:{" "}
+              <strong>{recovery.name}</strong>, {recovery.points} control points.
+            </span>
+            <span class="row">
+              <Button primary label="Take it up again" onClick={() => void app.recover()} />
+              <Button label="Forget it" onClick={() => void app.forgetRecovery()} />
+            </span>
+          </div>
+        )}
+      </div>
+    </div>
+  );
+}
+
+export function BusyNote() {
+  const { busy } = useAppState();
+  if (!busy) return null;
+  const percent = busy.fraction === null ? undefined : Math.round(100 * busy.fraction);
+  return (
+    <div class="busy" role="status">
+      <span>{busy.label}</span>
+      <progress max="100" value={percent} aria-label={busy.label} />
+      {busy.cancel && <Button quiet icon="close" label="Cancel" onClick={busy.cancel} />}
+    </div>
+  );
+}
+
+export function Toasts() {
+  const app = useApp();
+  const { toasts } = useAppState();
+  return (
+    <div class="toasts" aria-live="polite">
+      {toasts.map((toast) => (
+        <div key={toast.id} class={`toast ${toast.kind}`} role={toast.kind === "error" ? "alert" : "status"}>
+          <span>{toast.text}</span>
+          <Button quiet icon="close" label="Dismiss" onClick={() => app.dismiss(toast.id)} />
+        </div>
+      ))}
+    </div>
+  );
+}
+
+/** The two kinds of weights, named above their halves. */
+export function SideLabels() {
+  const { view, session, comparisonFit } = useAppState();
+  if (!view.comparison) return null;
+  const { kind } = session.settings;
+  const name = (neural: boolean): string => (neural ? "Neural" : "Classic");
+  return (
+    <div class="side-labels" aria-hidden="true">
+      <span>{name(kind === "neural")}</span>
+      <span>
+        {name(kind !== "neural")}
+        {comparisonFit.status === "fitting" ? " …" : ""}
+      </span>
+    </div>
+  );
+}
+
+export function Help() {
+  const app = useApp();
+  const { help } = useAppState();
+  const dialog = useRef<HTMLDialogElement>(null);
+  useEffect(() => {
+    if (help) dialog.current?.showModal();
+    else dialog.current?.close();
+  }, [help]);
+  const groups = ["Edit", "Move", "View", "File"] as const;
+  return (
+    <dialog ref={dialog} class="help" aria-labelledby="help-title" onClose={() => app.store.set({ help: false })} onClick={(event) => event.target === dialog.current && app.store.set({ help: false })}>
+      <header>
+        <h2 id="help-title">Keys and gestures</h2>
+        <Button quiet icon="close" label="Close" hint="Esc" onClick={() => app.store.set({ help: false })} />
+      </header>
+      <div class="help-columns">
+        <section>
+          <h3>On the shape</h3>
+          <dl>{GESTURES.map(([keys, what]) => <Entry key={keys} keys={keys} what={what} />)}</dl>
+        </section>
+        {groups.map((group) => (
+          <section key={group}>
+            <h3>{group}</h3>
+            <dl>
+              {SHORTCUTS.filter((shortcut) => shortcut.group === group).map((s) => <Entry key={s.keys} keys={s.keys} what={s.label} />)}
+            </dl>
+          </section>
+        ))}
+      </div>
+      <footer>
+        <Icon name="target" />
+        <span>
+          A small network, trained on nothing but your control points, says how much each matters where; moving least squares turns that
+          into a motion. Low temperatures keep parts apart.
+        </span>
+      </footer>
+    </dialog>
+  );
+}
+
+function Entry({ keys, what }: { keys: string; what: string }) {
+  return (
+    <>
+      <dt><kbd>{keys}</kbd></dt>
+      <dd>{what}</dd>
+    </>
+  );
+}

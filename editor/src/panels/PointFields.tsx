@@ -1,0 +1,102 @@
+import { useEffect, useState } from "preact/hooks";
+import { pair, put, rename, resetTargets, toggleLock, unpair } from "../commands/index.ts";
+import { twinOf } from "../model/mirror.ts";
+import { type ControlPoint, isMoved, leader, selected } from "../model/session.ts";
+import { AXES, type Vec3 } from "../model/vec3.ts";
+import { Button, NumberField } from "./controls.tsx";
+import { useApp, useAppState } from "./useStore.ts";
+
+/** The selected control point in words and numbers. */
+export function PointFields() {
+  const app = useApp();
+  const { session, view, shape } = useAppState();
+  const point = leader(session);
+  if (!point || !shape) return null;
+  const all = selected(session);
+  // Ten-thousandths of the shape.
+  const digits = Math.min(12, Math.max(0, 3 - Math.floor(Math.log10(shape.opened.frame.half))));
+  const row = (which: "target" | "position", title: string) => (
+    <div class={`coordinates ${view.moves === which ? "" : "faint"}`}>
+      <span class="row-label">{title}</span>
+      {AXES.slice(0, shape.opened.dim).map((axis, at) => (
+        <NumberField
+          key={axis}
+          prefix={axis}
+          label={`${title} ${axis}`}
+          value={point[which][at]}
+          shown={point[which][at].toFixed(digits)}
+          disabled={point.locked}
+          onChange={(value) => app.do(put(point.id, which, point[which].map((c, k) => (k === at ? value : c)) as unknown as Vec3))}
+        />
+      ))}
+    </div>
+  );
+  return (
+    <div class="point-fields">
+      <div class="row">
+        <NameField point={point} />
+        <Button quiet icon={point.locked ? "lock" : "unlock"} label={point.locked ? "Free" : "Lock: it stays where it is"} hint="L" pressed={point.locked} onClick={() => app.do(toggleLock(session.selection))} />
+        <Button quiet icon="reset" label="Reset the target" hint="0" disabled={!all.some(isMoved)} onClick={() => app.do(resetTargets("selected"))} />
+      </div>
+      {row("target", "Target")}
+      {row("position", "At rest")}
+      {session.settings.mirror && <Twin point={point} />}
+      {all.length > 1 && <p class="hint">{all.length} are selected and move together.</p>}
+    </div>
+  );
+}
+
+function NameField({ point }: { point: ControlPoint }) {
+  const app = useApp();
+  const [name, setName] = useState(point.name);
+  useEffect(() => setName(point.name), [point.id, point.name]);
+  const take = (): void => {
+    app.do(rename(point.id, name));
+    setName(app.history.session.points.find(({ id }) => id === point.id)?.name ?? name);
+  };
+  return (
+    <input
+      class="name-field"
+      type="text"
+      aria-label="Name"
+      value={name}
+      onInput={(event) => setName(event.currentTarget.value)}
+      onBlur={take}
+      onKeyDown={(event) => {
+        if (event.key === "Enter") take();
+        if (event.key === "Escape") {
+          event.stopPropagation();
+          setName(point.name);
+        }
+      }}
+    />
+  );
+}
+
+/** Which control point is the twin; to be chosen among the others. */
+function Twin({ point }: { point: ControlPoint }) {
+  const app = useApp();
+  const { session } = useAppState();
+  const twin = twinOf(session, point.id);
+  return (
+    <label class="field">
+      <span>Twin</span>
+      <select
+        value={twin === undefined ? "" : String(twin)}
+        onChange={(event) => {
+          const chosen = event.currentTarget.value;
+          app.do(chosen === "" ? unpair(point.id) : pair(point.id, Number(chosen)));
+        }}
+      >
+        <option value="">none</option>
+        {session.points
+          .filter((other) => other.id !== point.id)
+          .map((other) => (
+            <option key={other.id} value={String(other.id)}>
+              {other.name}
+            </option>
+          ))}
+      </select>
+    </label>
+  );
+}

@@ -1,0 +1,47 @@
+import type { FitState } from "../app/state.ts";
+import { isMoved } from "../model/session.ts";
+import { distance } from "./controls.tsx";
+import { useAppState } from "./useStore.ts";
+
+/** How things stand, quietly. */
+export function StatusBar() {
+  const { fit, comparisonFit, session, shape, distances, view, autosaved, slowFrames } = useAppState();
+  if (!shape) return null;
+  const moved = session.points.filter(isMoved);
+  const away = moved.map((point) => distances.get(point.id)).filter((d) => d !== undefined);
+  return (
+    <footer class="status-bar">
+      <span class={`fit ${fit.status}`} role="status">
+        {textOf(fit)}
+        {view.comparison && comparisonFit.status === "fitting" ? " · comparing" : ""}
+      </span>
+      {away.length > 0 && (
+        <span title="The largest distance of a control point from its target">
+          off target by at most {distance(Math.max(...away), 2 * shape.opened.frame.half)} ({percent(Math.max(...away) / (2 * shape.opened.frame.half))})
+        </span>
+      )}
+      {slowFrames && <span>too many weights for the graphics card: frames are computed by the core</span>}
+      <span class="spacer" />
+      {view.moves === "position" && <span class="mode">moving places at rest</span>}
+      {view.before && <span class="mode">before</span>}
+      {autosaved && <span title="In this browser; nothing is uploaded">kept {autosaved.toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" })}</span>}
+    </footer>
+  );
+}
+
+function textOf(fit: FitState): string {
+  switch (fit.status) {
+    case "none":
+      return "No control points yet";
+    case "fitting":
+      return fit.fraction > 0 ? `Fitting ${percent(fit.fraction)}` : "Fitting";
+    case "failed":
+      return fit.reason;
+    case "ready":
+      return fit.loss === null
+        ? "Ready"
+        : `Ready · loss ${fit.loss.toPrecision(2)} after ${fit.steps} steps · ${(fit.milliseconds / 1000).toFixed(2)} s`;
+  }
+}
+
+const percent = (share: number): string => `${(100 * share).toFixed(share < 0.01 ? 1 : 0)} %`;

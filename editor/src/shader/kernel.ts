@@ -1,0 +1,270 @@
+/**
+ * The drag on the GPU. Rest places, normals and logits go up once; a frame uploads the control points alone, and the vertex
+ * shader writes the deformed shape into buffers (transform feedback) that are then drawn as any other. Nothing is computed again for
+ * a frame in which only the camera moves.
+ */
+
+import type { Transform } from "../model/settings.ts";
+import { anchor } from "./anchor.ts";
+import { DEFORM_VERTEX_SHADER, NO_FRAGMENTS } from "./glsl.ts";
+
+/** What is drawn: each vertex belongs to a point of the shape, whose logits it has. */
+export interface RestVertices {
+  /** Relative to the shape's box, 3 numbers each. */
+  positions: Float32Array<ArrayBuffer>;
+  normals: Float32Array<ArrayBuffer>;
+  points: Uint32Array<ArrayBuffer>;
+}
+
+export type Tint = { by: "nothing" } | { by: "weight"; of: number } | { by: "point" };
+
+/** How the control points are moved; coordinates relative to the shape's box. */
+export interface GpuMotion {
+  /** m x 3 */
+  p: Float64Array;
+  q: Float64Array;
+  transform: Transform;
+  temperature: number;
+  tint: Tint;
+}
+
+const TRANSFORM_CODES: Record<Transform, number> = { rigid: 0, similarity: 1, affine: 2 };
+const TINT_CODES: Record<Tint["by"], number> = { nothing: 0, weight: 1, point: 2 };
+const UNIFORMS = [
+  "logits", "controlPoints", "m", "transform", "temperature", "moved",
+  "anchorRotation", "anchorScale", "anchorLinear", "tintBy", "tinted",
+] as const; // prettier-ignore
+/** Larger than any logit that means anything, and safe to compute with, unlike infinity. */
+const LARGEST_LOGIT = 1e30;
+
+export class Kernel {
+  readonly gl: WebGL2RenderingContext;
+  readonly program: WebGLProgram;
+  readonly uniforms: Record<(typeof UNIFORMS)[number], WebGLUniformLocation | null>;
+
+  readonly #afterwards: () => void;
+
+  /** `afterwards` is called when the context has been used: what others believe of its state is not so any more. */
+  constructor(gl: WebGL2RenderingContext, afterwards: () => void = () => {}) {
+    this.gl = gl;
+    this.#afterwards = afterwards;
+    this.program = link(gl);
+    this.uniforms = Object.fromEntries(
+      UNIFORMS.map((name) => [name, gl.getUniformLocation(this.program, name)]),
+    ) as typeof this.uniforms;
+  }
+
+  /** Takes a shape to the GPU. */
+  bind(rest: RestVertices): BoundVertices {
+    return this.use(() => new BoundVertices(this, rest));
+  }
+
+  /** Does some work in the context, from a state that it knows. Nothing is asked of the context: the answer would have to be waited for. */
+  use<T>(work: () => T): T {
+    const { gl } = this;
+    gl.bindVertexArray(null);
+    gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
+    gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
+    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
+    gl.pixelStorei(gl.UNPACK_ROW_LENGTH, 0);
+    try {
+      return work();
+    } finally {
+      gl.bindVertexArray(null);
+      gl.bindBuffer(gl.ARRAY_BUFFER, null);
+      this.#afterwards();
+    }
+  }
+}
+
+/** The vertices of one shape on the GPU, with the buffers that their deformed places are written to. */
+export class BoundVertices {
+  readonly count: number;
+  readonly positions: WebGLBuffer;
+  readonly normals: WebGLBuffer;
+  readonly tints: WebGLBuffer;
+  readonly #kernel: Kernel;
+  readonly #inputs: WebGLBuffer[] = [];
+  readonly #array: WebGLVertexArrayObject;
+  readonly #feedback: WebGLTransformFeedback;
+  readonly #controlPoints: WebGLTexture;
+  #logits: WebGLTexture | undefined;
+  #m = 0;
+  #colours: Float32Array = new Float32Array(0);
+  #table: Float32Array = new Float32Array(0);
+
+  constructor(kernel: Kernel, rest: RestVertices) {
+    const { gl } = kernel;
+    this.#kernel = kernel;
+    this.count = rest.points.length;
+    this.#array = gl.createVertexArray();
+    gl.bindVertexArray(this.#array);
+    [rest.positions, rest.normals, rest.points].forEach((data, location) => {
+      const buffer = gl.createBuffer();
+      this.#inputs.push(buffer);
+      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+      gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(location);
+      if (location === 2) gl.vertexAttribIPointer(location, 1, gl.UNSIGNED_INT, 0, 0);
+      else gl.vertexAttribPointer(location, 3, gl.FLOAT, false, 0, 0);
+    });
+    gl.bindVertexArray(null);
+    const output = (data: Float32Array<ArrayBuffer>): WebGLBuffer => {
+      const buffer = gl.createBuffer();
+      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+      gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_COPY);
+      return buffer;
+    };
+    this.positions = output(rest.positions);
+    this.normals = output(rest.normals);
+    this.tints = output(new Float32Array(3 * this.count).fill(1));
+    this.#feedback = gl.createTransformFeedback();
+    gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, this.#feedback);
+    [this.positions, this.normals, this.tints].forEach((buffer, at) =>
+      gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, at, buffer),
+    );
+    gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, null);
+    this.#controlPoints = dataTexture(gl);
+  }
+
+  /**
+   * Takes logits to the GPU, n x m row by row, with a colour for each control point, m x 3.
+   *
+   * Returns false, and keeps what there was, where they are more than a texture holds.
+   */
+  setLogits(logits: Float32Array, m: number, colours: Float32Array): boolean {
+    const { gl } = this.#kernel;
+    const limit = gl.getParameter(gl.MAX_TEXTURE_SIZE) as number;
+    const perPoint = Math.ceil(m / 4);
+    const texels = (logits.length / m) * perPoint;
+    const width = Math.min(texels, limit, 4096);
+    const height = Math.ceil(texels / width);
+    if (height > limit || m > limit) return false;
+    const padded = new Float32Array(4 * width * height);
+    for (let from = 0, to = 0; from < logits.length; from += m, to += 4 * perPoint) {
+      for (let i = 0; i < m; i++) padded[to + i] = Math.min(logits[from + i], LARGEST_LOGIT);
+    }
+    this.#kernel.use(() => {
+      this.#logits ??= dataTexture(gl);
+      gl.bindTexture(gl.TEXTURE_2D, this.#logits);
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, padded);
+      this.#m = m;
+      this.#colours = colours;
+      this.#table = new Float32Array(4 * m * 3);
+      gl.bindTexture(gl.TEXTURE_2D, this.#controlPoints);
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, m, 3, 0, gl.RGBA, gl.FLOAT, null);
+    });
+    return true;
+  }
+
+  /** Computes a frame. */
+  deform(motion: GpuMotion): void {
+    if (this.#logits && motion.p.length === 3 * this.#m) this.#kernel.use(() => this.#compute(motion));
+  }
+
+  #compute({ p, q, transform, temperature, tint }: GpuMotion): void {
+    const { gl, program, uniforms } = this.#kernel;
+    const m = this.#m;
+    gl.useProgram(program);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, this.#logits ?? null);
+    gl.activeTexture(gl.TEXTURE1);
+    gl.bindTexture(gl.TEXTURE_2D, this.#controlPoints);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, m, 3, gl.RGBA, gl.FLOAT, this.#fill(p, q));
+    const { rotation, scale, linear } = anchor(p, q);
+    gl.uniform1i(uniforms.logits, 0);
+    gl.uniform1i(uniforms.controlPoints, 1);
+    gl.uniform1i(uniforms.m, m);
+    gl.uniform1i(uniforms.transform, TRANSFORM_CODES[transform]);
+    gl.uniform1f(uniforms.temperature, temperature);
+    gl.uniform1i(uniforms.moved, p.every((c, at) => c === q[at]) ? 0 : 1);
+    gl.uniformMatrix3fv(uniforms.anchorRotation, true, rotation);
+    gl.uniform1f(uniforms.anchorScale, scale);
+    gl.uniformMatrix3fv(uniforms.anchorLinear, true, linear);
+    gl.uniform1i(uniforms.tintBy, TINT_CODES[tint.by]);
+    gl.uniform1i(uniforms.tinted, tint.by === "weight" ? tint.of : -1);
+    gl.bindVertexArray(this.#array);
+    // What is written to must not be bound to anything else, and drawing may have left it so.
+    gl.bindBuffer(gl.ARRAY_BUFFER, null);
+    gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, this.#feedback);
+    gl.enable(gl.RASTERIZER_DISCARD);
+    gl.beginTransformFeedback(gl.POINTS);
+    gl.drawArrays(gl.POINTS, 0, this.count);
+    gl.endTransformFeedback();
+    gl.disable(gl.RASTERIZER_DISCARD);
+    gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, null);
+  }
+
+  /** Shows places that were computed elsewhere. */
+  show({ positions, normals }: Pick<RestVertices, "positions" | "normals">): void {
+    const { gl } = this.#kernel;
+    this.#kernel.use(() => {
+      gl.bindBuffer(gl.ARRAY_BUFFER, this.positions);
+      gl.bufferSubData(gl.ARRAY_BUFFER, 0, positions);
+      gl.bindBuffer(gl.ARRAY_BUFFER, this.normals);
+      gl.bufferSubData(gl.ARRAY_BUFFER, 0, normals);
+    });
+  }
+
+  /** The deformed places as the GPU has them: for checks, as it waits for the GPU. */
+  read(): Float32Array<ArrayBuffer> {
+    const { gl } = this.#kernel;
+    const positions = new Float32Array(3 * this.count);
+    this.#kernel.use(() => {
+      gl.bindBuffer(gl.ARRAY_BUFFER, this.positions);
+      gl.getBufferSubData(gl.ARRAY_BUFFER, 0, positions);
+    });
+    return positions;
+  }
+
+  dispose(): void {
+    const { gl } = this.#kernel;
+    for (const buffer of [...this.#inputs, this.positions, this.normals, this.tints]) gl.deleteBuffer(buffer);
+    gl.deleteVertexArray(this.#array);
+    gl.deleteTransformFeedback(this.#feedback);
+    gl.deleteTexture(this.#controlPoints);
+    if (this.#logits) gl.deleteTexture(this.#logits);
+  }
+
+  #fill(p: Float64Array, q: Float64Array): Float32Array {
+    const [table, m] = [this.#table, this.#m];
+    for (let i = 0; i < m; i++) {
+      for (let c = 0; c < 3; c++) {
+        table[4 * i + c] = p[3 * i + c];
+        table[4 * (m + i) + c] = q[3 * i + c];
+        table[4 * (2 * m + i) + c] = this.#colours[3 * i + c];
+      }
+    }
+    return table;
+  }
+}
+
+function dataTexture(gl: WebGL2RenderingContext): WebGLTexture {
+  const texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, texture);
+  for (const parameter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
+    gl.texParameteri(gl.TEXTURE_2D, parameter, gl.NEAREST);
+  }
+  return texture;
+}
+
+function link(gl: WebGL2RenderingContext): WebGLProgram {
+  const program = gl.createProgram();
+  for (const [type, source] of [
+    [gl.VERTEX_SHADER, DEFORM_VERTEX_SHADER],
+    [gl.FRAGMENT_SHADER, NO_FRAGMENTS],
+  ] as const) {
+    const shader = gl.createShader(type);
+    if (!shader) throw new Error("The browser has lost its graphics: reload the page.");
+    gl.shaderSource(shader, source);
+    gl.compileShader(shader);
+    gl.attachShader(program, shader);
+  }
+  gl.transformFeedbackVaryings(program, ["y", "turned", "tint"], gl.SEPARATE_ATTRIBS);
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) {
+    const logs = gl.getAttachedShaders(program)?.map((shader) => gl.getShaderInfoLog(shader)) ?? [];
+    throw new Error(`The drag's shader was refused: ${[gl.getProgramInfoLog(program), ...logs].join(" ").trim()}`);
+  }
+  return program;
+}

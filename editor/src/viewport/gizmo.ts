@@ -1,0 +1,97 @@
+/** The gizmo: moves, turns or scales the selected control points along axes, in planes and freely. */
+
+import { type Matrix4, Object3D, type Scene, Vector3 } from "three";
+import { TransformControls } from "three/addons/controls/TransformControls.js";
+import type { Tool } from "../model/view.ts";
+import type { Stage } from "./stage.ts";
+
+export interface GizmoEvents {
+  begin(): void;
+  /** How places (relative to the shape's box) move, from those with which the drag began. */
+  move(map: (place: Vector3) => Vector3): void;
+  end(): void;
+}
+
+export class Gizmo {
+  readonly #controls: TransformControls;
+  readonly #proxy = new Object3D();
+  readonly #start = new Vector3();
+  /** Steps that translations keep to, relative to the shape's box; 0: none. */
+  snap = 0;
+
+  constructor(stage: Stage, scene: Scene, events: GizmoEvents) {
+    this.#controls = new TransformControls(stage.camera, stage.pane);
+    this.#controls.setSize(0.78);
+    this.#controls.setColors(0xe0483e, 0x55a630, 0x3d7fe0, 0xffb020);
+    scene.add(this.#proxy, this.#controls.getHelper());
+    this.#controls.addEventListener("change", () => stage.request());
+    this.#controls.addEventListener("dragging-changed", ({ value }) => {
+      stage.orbit.enabled = !value;
+    });
+    this.#controls.addEventListener("mouseDown", () => {
+      this.#start.copy(this.#proxy.position);
+      events.begin();
+    });
+    this.#controls.addEventListener("objectChange", () => events.move(this.#map()));
+    this.#controls.addEventListener("mouseUp", () => {
+      events.end();
+      this.#settle();
+    });
+  }
+
+  /** Only the axes that the shape has. */
+  setDimension(dim: 1 | 2 | 3): void {
+    Object.assign(this.#controls, { showY: dim > 1, showZ: dim > 2, showXY: dim > 1, showYZ: dim > 2, showXZ: dim > 2 });
+  }
+
+  get dragging(): boolean {
+    return this.#controls.dragging;
+  }
+
+  /** Whether the pointer is over one of its handles. */
+  get hovered(): boolean {
+    return this.#controls.axis !== null;
+  }
+
+  /** Puts the gizmo at a place, or takes it away. Not during its own drag. */
+  place(at: Vector3 | undefined, tool: Tool): void {
+    if (this.dragging) return;
+    if (!at) {
+      this.#controls.detach();
+      return;
+    }
+    this.#proxy.position.copy(at);
+    if (this.#controls.mode !== tool) this.#controls.setMode(tool);
+    if (!this.#controls.object) this.#controls.attach(this.#proxy);
+  }
+
+  /** Ends the drag; what it did is taken back by who listens. */
+  cancel(): void {
+    if (!this.dragging) return;
+    this.#controls.reset();
+    this.#controls.pointerUp({ button: 0 } as PointerEvent);
+    this.#settle();
+  }
+
+  #settle(): void {
+    this.#proxy.quaternion.identity();
+    this.#proxy.scale.set(1, 1, 1);
+  }
+
+  #map(): (place: Vector3) => Vector3 {
+    if (this.#controls.mode === "translate") {
+      const by = snapped(this.#proxy.position.clone().sub(this.#start), this.snap);
+      this.#proxy.position.copy(this.#start).add(by);
+      return (place) => place.clone().add(by);
+    }
+    this.#proxy.updateMatrix();
+    const pivot = this.#start;
+    const matrix: Matrix4 = this.#proxy.matrix.clone().setPosition(0, 0, 0);
+    return (place) => place.clone().sub(pivot).applyMatrix4(matrix).add(pivot);
+  }
+}
+
+/** A displacement in whole steps along each axis. */
+export function snapped(by: Vector3, step: number): Vector3 {
+  return step > 0 ? by.divideScalar(step).round().multiplyScalar(step) : by;
+}

@@ -1,0 +1,140 @@
+/** Control points on the screen: discs of the same size at every distance, and lines from where they were to where they are. */
+
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  GreaterDepth,
+  Group,
+  LessEqualDepth,
+  LineBasicMaterial,
+  LineSegments,
+  Points,
+  ShaderMaterial,
+  SRGBColorSpace,
+} from "three";
+import { hueOf } from "../model/view.ts";
+
+export interface Marker {
+  /** Relative to the shape's box. */
+  rest: readonly number[];
+  place: readonly number[];
+  /** Its place in the list, which gives the colour. */
+  number: number;
+  selected: boolean;
+  twin: boolean;
+  locked: boolean;
+}
+
+const VERTEX = /* glsl */ `
+attribute vec3 tone;
+attribute float state;
+uniform float pixels;
+varying vec3 vTone;
+varying float vState;
+void main() {
+  vTone = tone;
+  vState = state;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  // Drawn a little in front of the surface that it lies on.
+  gl_Position.z -= 0.004 * gl_Position.w * clamp(1.0 - gl_Position.z / gl_Position.w, 0.0, 1.0);
+  gl_PointSize = pixels * (state >= 1.0 ? 1.25 : 1.0);
+}
+`;
+
+/** state: 0 plain, 1 selected, 2 twin of a selected one; + 4 locked. */
+const FRAGMENT = /* glsl */ `
+uniform float opacity;
+varying vec3 vTone;
+varying float vState;
+void main() {
+  bool locked = vState >= 3.5;
+  float state = locked ? vState - 4.0 : vState;
+  vec2 c = 2.0 * gl_PointCoord - 1.0;
+  float r = locked ? max(abs(c.x), abs(c.y)) * 1.15 : length(c);
+  float edge = fwidth(r);
+  float disc = 1.0 - smoothstep(0.94 - edge, 0.94, r);
+  if (disc <= 0.0) discard;
+  float core = 1.0 - smoothstep(0.60 - edge, 0.60 + edge, r);
+  vec3 ring = state > 0.5 && state < 1.5 ? vec3(1.0, 0.26, 0.0) : state > 1.5 ? vec3(0.08, 0.5, 1.0) : vec3(1.0);
+  float shadow = smoothstep(0.80, 0.94, r);
+  gl_FragColor = vec4(mix(mix(ring, vec3(0.04, 0.05, 0.07), 0.75 * shadow), vTone, core), disc * opacity);
+  #include <colorspace_fragment>
+}
+`;
+
+export class Markers {
+  readonly object = new Group();
+  readonly #geometry = new BufferGeometry();
+  readonly #lineGeometry = new BufferGeometry();
+  readonly #pixels = { value: 16 };
+  #count = -1;
+
+  constructor() {
+    const material = (opacity: number, hidden: boolean): ShaderMaterial =>
+      new ShaderMaterial({
+        vertexShader: VERTEX,
+        fragmentShader: FRAGMENT,
+        uniforms: { pixels: this.#pixels, opacity: { value: opacity } },
+        transparent: true,
+        depthWrite: false,
+        depthFunc: hidden ? GreaterDepth : LessEqualDepth,
+      });
+    const line = (opacity: number, hidden: boolean): LineBasicMaterial =>
+      new LineBasicMaterial({
+        color: 0xff8c1a,
+        transparent: true,
+        opacity,
+        depthWrite: false,
+        depthFunc: hidden ? GreaterDepth : LessEqualDepth,
+      });
+    const nodes = [
+      new LineSegments(this.#lineGeometry, line(0.25, true)),
+      new LineSegments(this.#lineGeometry, line(0.9, false)),
+      new Points(this.#geometry, material(0.5, true)),
+      new Points(this.#geometry, material(1, false)),
+    ];
+    nodes.forEach((node, i) => {
+      node.frustumCulled = false;
+      node.renderOrder = 10 + i;
+      this.object.add(node);
+    });
+  }
+
+  /** The size of a disc in pixels of the screen. */
+  setSize(pixels: number, pixelRatio: number): void {
+    this.#pixels.value = pixels * pixelRatio;
+  }
+
+  update(markers: readonly Marker[]): void {
+    if (markers.length !== this.#count) {
+      this.#count = markers.length;
+      const buffer = (size: number): BufferAttribute => new BufferAttribute(new Float32Array(size * markers.length), size);
+      this.#geometry.dispose();
+      this.#lineGeometry.dispose();
+      this.#geometry.setAttribute("position", buffer(3));
+      this.#geometry.setAttribute("tone", buffer(3));
+      this.#geometry.setAttribute("state", buffer(1));
+      this.#lineGeometry.setAttribute("position", new BufferAttribute(new Float32Array(6 * markers.length), 3));
+    }
+    const [position, tone, state] = ["position", "tone", "state"].map(
+      (name) => this.#geometry.getAttribute(name) as BufferAttribute,
+    );
+    const ends = this.#lineGeometry.getAttribute("position") as BufferAttribute;
+    markers.forEach((marker, i) => {
+      position.array.set(marker.place, 3 * i);
+      tone.array.set(colourOf(marker.number), 3 * i);
+      state.array[i] = (marker.selected ? 1 : marker.twin ? 2 : 0) + (marker.locked ? 4 : 0);
+      ends.array.set(marker.rest, 6 * i);
+      ends.array.set(marker.place, 6 * i + 3);
+    });
+    for (const attribute of [position, tone, state, ends]) attribute.needsUpdate = true;
+  }
+}
+
+const scratch = new Color();
+
+/** The colour of the i-th control point, linear. */
+export function colourOf(i: number): [number, number, number] {
+  return scratch.setHSL(...hueOf(i), SRGBColorSpace).toArray() as [number, number, number];
+}

@@ -1,0 +1,40 @@
+"""What `neuralmls.advise` looks at, on displacements that people made: `python -m studies.advice_thresholds FOLDER`.
+
+The thresholds of `neuralmls/advice.py` lie beyond the greatest of these, so that they are silent where nothing is
+torn. FOLDER is that of `studies.exact_handles`.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+import neuralmls as nm
+from neuralmls.advice import MOVED
+from neuralmls.probe import Probe
+from studies.exact_handles import OURS, PAPER, TRAININGS, cases
+
+
+def main() -> None:
+    """Print a line a case, soft and exact, with the weights of the paper and with ours."""
+    print("| case | stops short by, of the longest move | folded part | greatest stretch | spacings away |")
+    print("|---|---|---|---|---|")
+    for found in cases(Path(sys.argv[1])):
+        longest = np.linalg.norm(found.q - found.p, axis=1).max()
+        for training in (PAPER, OURS):
+            weights = nm.NeuralWeights.fit(found.p, bounds=found.shape.bounds, **TRAININGS[training])
+            probe = Probe(found.shape.positions, found.shape.faces, weights, found.q)
+            for adherence in (0.0, 1.0):
+                motion = probe.motion(1.0, adherence)
+                moves = np.linalg.norm(motion.positions - probe.places, axis=1) > MOVED * probe.side
+                short = probe.missed("rigid", 1.0, adherence).max() / longest
+                print(f"| {found.title}, {training.partition(':')[0]}, adherence {adherence:g} | {short:.3f} ", end="")
+                print(
+                    f"| {motion.folded_part():.4f} | {motion.stretch().max():.2f} | {probe.far()[0][moves].max():.2f} |"
+                )
+
+
+if __name__ == "__main__":
+    main()
