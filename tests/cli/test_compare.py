@@ -58,7 +58,7 @@ def test_json_holds_every_figure(run, moved):
 def test_only_some_methods_if_asked_for(run, moved, refused):
     told = json.loads(run(*moved, "--json", "--methods", "classic,rbf").out)
     assert [method["name"] for method in told["methods"]] == ["classic", "rbf"]
-    refused(2, *moved, "--methods", "kpd", words=("--methods", "neural, neural-exact, classic", "'kpd'"))
+    refused(2, *moved, "--methods", "kpd", words=("--methods", "neural, neural-exact, shape-aware, classic", "'kpd'"))
 
 
 def test_csv_has_a_row_a_method(run, moved, here):
