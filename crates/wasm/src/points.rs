@@ -44,7 +44,8 @@ impl Points {
     ) -> Result<Weights, JsError> {
         let schedule = steps.map_or(Training::default().schedule, Schedule::Fixed);
         let training = Training { width, seed, schedule, ..Training::default() };
-        let fit = neural::fit(&p, None, self.dim, self.frame, &training, &mut reporter(tell)).map_err(refused)?;
+        let fit =
+            neural::fit(&p, None, self.dim, self.frame, &training, &mut reporter(tell)).map_err(refused)?;
         Ok(Weights::neural(p, fit))
     }
 
