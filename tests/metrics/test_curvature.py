@@ -90,8 +90,8 @@ def test_the_airplane_of_table_1_measures_what_was_measured(golden):
 
 
 def test_the_chair_measures_what_was_measured(data):
-    # QUALITY: classic 24.1, neural 2.83. The mean hangs on triangles so thin that the last digits of a position count: 24.4
-    # from positions in double precision, 24.7 from those of a frame in single precision.
+    # QUALITY: classic 24.1, neural 2.83. The mean hangs on triangles so thin that the last digits of a position count:
+    # 24.4 from positions in double precision, 24.7 from those of a frame in single precision.
     case = json.loads((data / "shapenet" / "control_points.json").read_text())["ShapeNetChair1"]
     shape = nm.read(data / "shapenet" / "ShapeNetChair1" / "model.obj")
     centre = shape.bounds.mean(axis=0)
