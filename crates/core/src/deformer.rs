@@ -214,9 +214,10 @@ impl Deformer {
 
     /// The points by pairs, where the map is rigid, in 3D, and enough of them share pairs.
     fn order(&self, p: &[[f64; 3]]) -> Option<&Order> {
-        let by_pairs = self.dim == 3 && self.transform == Transform::Rigid;
-        let order = || by_pairs.then(|| Order::new(&self.logits, p)).flatten();
-        self.order.get_or_init(order).as_ref()
+        if self.dim != 3 || self.transform != Transform::Rigid {
+            return None;
+        }
+        self.order.get_or_init(|| Order::new(&self.logits, p)).as_ref()
     }
 
     /// The first frame at a temperature, which may be the only one, makes its weights as it goes; the second one keeps them.

@@ -250,3 +250,21 @@ fn memory_of_another_size_is_refused() {
     assert!(into(5, 18).unwrap_err().to_string().contains("room for 6 numbers, found 5"));
     assert!(into(6, 17).unwrap_err().to_string().contains("room for 18 numbers, found 17"));
 }
+
+#[test]
+fn another_transform_gives_the_frames_of_a_deformer_of_that_transform() {
+    let x: Vec<f64> = (0..3000).map(|i| (f64::from(i) * 0.7).sin()).collect();
+    let p: Vec<f64> = (0..15).map(|i| (f64::from(i) * 1.9).cos()).collect();
+    let q: Vec<f64> = p.iter().map(|c| 1.3 * c + 0.1 * (5.0 * c).sin()).collect();
+    let mut turned = bound(&x, &p, 3, Transform::Rigid);
+    for transform in [Transform::Rigid, Transform::Similarity, Transform::Affine, Transform::Rigid] {
+        turned.set_transform(transform);
+        for _ in 0..3 {
+            let found = turned.deform(&q, 0.7, false, &mut |_| true).unwrap().positions;
+            assert_eq!(
+                found,
+                bound(&x, &p, 3, transform).deform(&q, 0.7, false, &mut |_| true).unwrap().positions
+            );
+        }
+    }
+}
