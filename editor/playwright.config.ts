@@ -18,9 +18,7 @@ export default defineConfig({
   outputDir: "test-results",
   // Two processors, and a graphics card in software.
   workers: 1,
-  timeout: 120_000,
-  // What a busy machine delays is tried again, and told as flaky.
-  retries: 2,
+  timeout: 60_000,
   expect: { timeout: 10_000 },
   reporter: "list",
   use: {

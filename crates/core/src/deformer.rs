@@ -3,13 +3,11 @@
 use crate::error::{check_points, Error};
 use crate::frame::Frame;
 use crate::mls::lanes::{BatchPoints, LaneHandles, Scratch, BATCH};
-use crate::mls::pairs::{self, ChunkOut, Order, PairFrame, PairWeights};
-use crate::mls::{in_three, Handles, Transform};
+use crate::mls::{Handles, Transform};
 use crate::parallel::{any_block, for_each_block, for_each_block_pair};
 use crate::progress::{report, Progress};
-use crate::softmax::{check_temperature, relative_weights, PackedWeights, Row};
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use crate::softmax::{check_temperature, relative_weights, PackedWeights};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Points between two reports of progress.
 const CHUNK: usize = 1 << 16;
@@ -34,16 +32,9 @@ pub struct Deformer {
     p: Vec<f64>,
     logits: Vec<f32>,
     transform: Transform,
-    /// The points by pairs of control points, where rigid maps in 3D go by them.
-    order: OnceLock<Option<Order>>,
-    /// The bits of the last frame's temperature, where points go by pairs.
-    temperature: AtomicU64,
-    /// Weights that the next frame may want, by pairs or as the points come.
-    kept_by_pairs: Kept<PairWeights>,
-    kept: Kept<PackedWeights>,
+    /// The weights of the last frame.
+    last: Mutex<Option<Arc<PackedWeights>>>,
 }
-
-type Kept<W> = Mutex<Option<Arc<W>>>;
 
 /// The result of [`Deformer::deform`].
 pub struct Deformed {
@@ -79,10 +70,7 @@ impl Deformer {
             return Err(Error::argument("logits", format!("the one at ({}, {}) is NaN", at / m, at % m)));
         }
         let frame = Frame::around(&x, dim);
-        let p = p.to_vec();
-        let (order, temperature) = (OnceLock::new(), AtomicU64::new(0));
-        let (kept_by_pairs, kept) = (Mutex::new(None), Mutex::new(None));
-        Ok(Deformer { dim, frame, x, p, logits, transform, order, temperature, kept_by_pairs, kept })
+        Ok(Deformer { dim, frame, x, p: p.to_vec(), logits, transform, last: Mutex::new(None) })
     }
 
     /// Points, n.
@@ -108,7 +96,7 @@ impl Deformer {
     /// Where the points go when the control points go to `q` (m x dim), with the weights at `temperature` > 0; with the local maps
     /// if `maps`. If every target is its control point, the positions are the input bit for bit.
     ///
-    /// The first frames at a temperature compute the weights; the next ones find them.
+    /// The first frame at a temperature computes the weights; the next ones find them.
     ///
     /// # Errors
     /// [`Error::Cancelled`]; where `q` does not fit, is not finite, or the temperature is not above 0.
@@ -182,88 +170,42 @@ impl Deformer {
         };
         let (p, q) = (enter(&self.p), enter(q));
         let handles = Handles::new(&p, &q, self.transform);
-        let lanes = handles.lanes(self.frame);
-        let in_three = if D == 3 { in_three(&p) } else { Vec::new() };
-        let weights = match self.order(&in_three) {
-            Some(order) => {
-                let weights = self.weights_by_pairs(order, &in_three, temperature);
-                Weights::ByPairs(handles.pairs(order, self.frame), weights)
-            }
-            None if lanes.is_some() => Weights::AsTheyCome(self.weights(temperature)),
-            None => Weights::None,
-        };
-        let (x, logits, frame) = (&self.x, &self.logits, self.frame);
-        let motion = Motion { x, logits, frame, temperature, handles, lanes, weights };
-        let size = motion.block_size();
+        let lanes = handles.lanes(self.frame).map(|lanes| (lanes, self.weights(temperature)));
+        let motion =
+            Motion { x: &self.x, logits: &self.logits, frame: self.frame, temperature, handles, lanes };
         let mut maps = maps.unwrap_or_default();
         for (chunk, y) in y.chunks_mut(CHUNK * D).enumerate() {
             let first = CHUNK * chunk;
             report(progress, first as f64 / self.len() as f64)?;
             if maps.is_empty() {
-                for_each_block(y, size * D, |block, y| motion.block(first + size * block, y, &mut []));
+                for_each_block(y, BLOCK * D, |block, y| motion.block(first + BLOCK * block, y, &mut []));
             } else {
                 let (now, later) = maps.split_at_mut(y.len() * D);
                 maps = later;
-                for_each_block_pair(y, size * D, now, size * D * D, |block, y, maps| {
-                    motion.block(first + size * block, y, maps);
+                for_each_block_pair(y, BLOCK * D, now, BLOCK * D * D, |block, y, maps| {
+                    motion.block(first + BLOCK * block, y, maps);
                 });
             }
         }
         Ok(())
     }
 
-    /// The points by pairs, where the map is rigid, in 3D, and enough of them share pairs.
-    fn order(&self, p: &[[f64; 3]]) -> Option<&Order> {
-        if self.dim != 3 || self.transform != Transform::Rigid {
-            return None;
-        }
-        self.order.get_or_init(|| Order::new(&self.logits, p)).as_ref()
-    }
-
-    /// The first frame at a temperature, which may be the only one, makes its weights as it goes; the second one keeps them.
-    fn weights_by_pairs<'a>(
-        &'a self,
-        order: &Order,
-        p: &'a [[f64; 3]],
-        temperature: f64,
-    ) -> pairs::Weights<'a> {
-        let points = pairs::Points { x: &self.x, logits: &self.logits, p, frame: self.frame, temperature };
-        let first = self.temperature.swap(temperature.to_bits(), Relaxed) != temperature.to_bits();
-        let found = |weights: &PairWeights| weights.temperature() == temperature;
-        if first {
-            return find(&self.kept_by_pairs, found)
-                .map_or(pairs::Weights::Passing(points), pairs::Weights::Kept);
-        }
-        pairs::Weights::Kept(find_or_keep(&self.kept_by_pairs, found, |old| {
-            PairWeights::new(order, points, old)
-        }))
-    }
-
+    /// The packed weights at `temperature`: those of the last frame, or new ones in their place.
     fn weights(&self, temperature: f64) -> Arc<PackedWeights> {
-        let m = self.p.len() / self.dim;
-        let found = |weights: &PackedWeights| weights.temperature() == temperature;
-        find_or_keep(&self.kept, found, |old| PackedWeights::new(&self.logits, m, temperature, old))
-    }
-}
-
-fn open<W>(kept: &Kept<W>) -> MutexGuard<'_, Option<Arc<W>>> {
-    kept.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// The weights that are kept if they are those to be found.
-fn find<W>(kept: &Kept<W>, found: impl Fn(&W) -> bool) -> Option<Arc<W>> {
-    open(kept).as_ref().filter(|weights| found(weights)).cloned()
-}
-
-/// The same, or new ones in their place, made in their memory.
-fn find_or_keep<W>(kept: &Kept<W>, found: impl Fn(&W) -> bool, new: impl FnOnce(Option<W>) -> W) -> Arc<W> {
-    find(kept, found).unwrap_or_else(|| {
         // Not locked while they are computed: this thread may meanwhile take up another frame of the same deformer.
-        let old = open(kept).take();
-        let weights = Arc::new(new(old.and_then(|old| Arc::try_unwrap(old).ok())));
-        *open(kept) = Some(weights.clone());
+        let last = {
+            let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+            match &*last {
+                Some(weights) if weights.temperature() == temperature => return weights.clone(),
+                _ => last.take(),
+            }
+        };
+        let memory = last.and_then(|last| Arc::try_unwrap(last).ok());
+        let m = self.p.len() / self.dim;
+        let weights = Arc::new(PackedWeights::new(&self.logits, m, temperature, memory));
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(weights.clone());
         weights
-    })
+    }
 }
 
 /// One frame: what is the same for all of its points.
@@ -273,90 +215,27 @@ struct Motion<'a, const D: usize> {
     frame: Frame,
     temperature: f64,
     handles: Handles<'a, D>,
-    /// The kernel that takes many points at a time, where there is one.
-    lanes: Option<LaneHandles>,
-    weights: Weights<'a>,
-}
-
-/// The weights of a frame, for the kernel that reads them.
-enum Weights<'a> {
-    /// There is no kernel: each point by itself.
-    None,
-    AsTheyCome(Arc<PackedWeights>),
-    ByPairs(PairFrame<'a>, pairs::Weights<'a>),
+    /// The kernel that takes many points at a time, where there is one, and its weights.
+    lanes: Option<(LaneHandles, Arc<PackedWeights>)>,
 }
 
 impl<const D: usize> Motion<'_, D> {
-    /// Points that one thread takes at a time.
-    fn block_size(&self) -> usize {
-        match self.weights {
-            Weights::ByPairs(..) => pairs::CHUNK,
-            _ => BLOCK,
-        }
-    }
-
-    /// Moves the points from `first` (a multiple of the block's size) on into `y`; their maps into `maps` unless it is empty.
+    /// Moves the points from `first` (a multiple of [`BLOCK`]) on into `y`; their maps into `maps` unless it is empty.
     fn block(&self, first: usize, y: &mut [f64], maps: &mut [f64]) {
         let n = y.len() / D;
-        match &self.weights {
-            Weights::None => self.one_by_one(first, 0..n, y, maps),
-            Weights::AsTheyCome(weights) => {
-                let x = &self.x[first * D..(first + n) * D];
-                let blocks = |at| weights.blocks(first + at);
-                let unsound = self.in_lanes(blocks, x, y, maps);
-                self.one_by_one(first, unsound.into_iter(), y, maps);
-            }
-            Weights::ByPairs(pairs, weights) => {
-                let chunk = first / pairs::CHUNK;
-                let mut rest = Vec::new();
-                pairs.deform(weights, &mut ChunkOut { chunk, y, maps, rest: &mut rest });
-                self.those(&rest, first, y, maps);
-            }
-        }
-    }
-
-    /// Moves the points `x`, whose weights from one of them on `blocks` gives; gives those that are left to do one by one.
-    fn in_lanes<'b, I: Iterator<Item = &'b [Row]> + Clone>(
-        &self,
-        blocks: impl Fn(usize) -> I,
-        x: &[f64],
-        y: &mut [f64],
-        maps: &mut [f64],
-    ) -> Vec<usize> {
-        let n = x.len() / D;
-        let Some(lanes) = &self.lanes else { return (0..n).collect() };
+        let Some((lanes, weights)) = &self.lanes else {
+            return self.one_by_one(first, 0..n, y, maps);
+        };
         let (mut scratch, mut unsound) = (Scratch::new(), Vec::new());
         for at in (0..n).step_by(BATCH) {
             let end = n.min(at + BATCH);
+            let x = &self.x[(first + at) * D..(first + end) * D];
             let maps = if maps.is_empty() { &mut [] } else { &mut maps[at * D * D..end * D * D] };
-            let points = BatchPoints { x: &x[at * D..end * D], y: &mut y[at * D..end * D], maps };
-            lanes.deform(blocks(at), points, &mut scratch);
+            let points = BatchPoints { x, y: &mut y[at * D..end * D], maps };
+            lanes.deform(weights.blocks(first + at), points, &mut scratch);
             unsound.extend(scratch.unsound(end - at).map(|lane| at + lane));
         }
-        unsound
-    }
-
-    /// Moves some points of a block, whose weights are not packed.
-    fn those(&self, points: &[u32], first: usize, y: &mut [f64], maps: &mut [f64]) {
-        let m = self.logits.len() / (self.x.len() / D);
-        let mut memory = None;
-        for points in points.chunks(4 * BATCH) {
-            let logits: Vec<f32> =
-                points.iter().flat_map(|i| &self.logits[m * *i as usize..][..m]).copied().collect();
-            let weights = PackedWeights::new(&logits, m, self.temperature, memory);
-            let x: Vec<f64> = points.iter().flat_map(|i| &self.x[D * *i as usize..][..D]).copied().collect();
-            let mut places = vec![0.0; x.len()];
-            let mut turns = vec![0.0; if maps.is_empty() { 0 } else { D * x.len() }];
-            let unsound = self.in_lanes(|at| weights.blocks(at), &x, &mut places, &mut turns);
-            for (i, place) in points.iter().zip(places.chunks_exact(D)) {
-                y[D * (*i as usize - first)..][..D].copy_from_slice(place);
-            }
-            for (i, turn) in points.iter().zip(turns.chunks_exact(D * D)) {
-                maps[D * D * (*i as usize - first)..][..D * D].copy_from_slice(turn);
-            }
-            self.one_by_one(first, unsound.into_iter().map(|i| points[i] as usize - first), y, maps);
-            memory = Some(weights);
-        }
+        self.one_by_one(first, unsound.into_iter(), y, maps);
     }
 
     /// The twin of the kernel: each point by itself, from its logits.

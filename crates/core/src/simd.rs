@@ -107,7 +107,6 @@ mod tests {
             x.mul(y),
             x.div(y),
             x.mul_add(y, L::splat(0.5)),
-            x.sub_mul(y, L::splat(0.5)),
             x.max(y),
             y.inverse_sqrt(),
             y.inverse(),
@@ -154,13 +153,12 @@ mod tests {
     fn every_instruction_set_of_this_machine_gives_the_same_answers() {
         let a = std::array::from_fn(|i| (i as f32 * 0.7).sin());
         let b = std::array::from_fn(|i| (i as f32 * 1.3).cos() + 2.0);
-        let operations: [fn(f32, f32) -> f32; 11] = [
+        let operations: [fn(f32, f32) -> f32; 10] = [
             |a, b| a + b,
             |a, b| a - b,
             |a, b| a * b,
             |a, b| a / b,
             |a, b| a * b + 0.5,
-            |a, b| a - b * 0.5,
             f32::max,
             |_, b| 1.0 / b.sqrt(),
             |_, b| 1.0 / b,
@@ -180,12 +178,8 @@ mod tests {
             for i in 0..WIDTH {
                 assert_eq!(bits >> i & 1 == 1, a[i] < b[i] - 2.0, "{simd:?}, lane {i}");
             }
-            for of_nothing in [0.0, f32::INFINITY] {
-                let results = all(simd, &a, &[of_nothing; WIDTH]);
-                assert!(results[7].iter().chain(&results[8]).all(|v| v.is_nan()), "{simd:?}, {of_nothing}");
-            }
             assert_eq!(permuted(simd, &a, &places), places.map(|i| a[i as usize]), "{simd:?}");
-            assert!((results[11][0] - a.iter().sum::<f32>()).abs() < 1e-5, "{simd:?}");
+            assert!((results[10][0] - a.iter().sum::<f32>()).abs() < 1e-5, "{simd:?}");
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::error::{check_number, Error};
 
 mod packed;
 
-pub(crate) use packed::{pack_rows, PackedWeights, Row, LANES, MORE};
+pub(crate) use packed::{PackedWeights, Row, LANES};
 
 /// The weights of one point, in the form that [`crate::mls`] takes.
 #[derive(Clone, Copy, Debug, PartialEq)]

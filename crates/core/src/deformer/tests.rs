@@ -163,7 +163,7 @@ fn one_by_one<const D: usize>(deformer: &Deformer, q: &[f64], temperature: f64) 
     let (p, q) = (enter(&deformer.p), enter(q));
     let handles = Handles::new(&p, &q, deformer.transform);
     let (x, logits, frame) = (&deformer.x, &deformer.logits, deformer.frame);
-    let motion = Motion { x, logits, frame, temperature, handles, lanes: None, weights: Weights::None };
+    let motion = Motion { x, logits, frame, temperature, handles, lanes: None };
     let (mut y, mut maps) = (vec![0.0; x.len()], vec![0.0; x.len() * D]);
     motion.block(0, &mut y, &mut maps);
     (y, maps)
@@ -201,23 +201,6 @@ fn a_frame_does_not_depend_on_the_frames_before() {
         let (fresh, _) = random_frames().pop().unwrap();
         assert_eq!(fresh.deform(&q, t, false, &mut |_| true).unwrap().positions, y);
     }
-}
-
-#[test]
-fn points_by_pairs_do_not_depend_on_whether_weights_are_kept() {
-    let rigid = |(deformer, _): &(Deformer, Vec<f64>)| {
-        deformer.dim == 3 && deformer.transform == Transform::Rigid && deformer.p.len() == 15
-    };
-    let fresh = || random_frames().into_iter().find(rigid).unwrap();
-    let (deformer, q) = fresh();
-    for t in [1.0, 1.0, 1.0, 0.1, 1.0, 0.1, 0.1, 1.0] {
-        let y = deformer.deform(&q, t, false, &mut |_| true).unwrap().positions;
-        assert_eq!(fresh().0.deform(&q, t, false, &mut |_| true).unwrap().positions, y, "T = {t}");
-    }
-    // Kept they were, those of the temperature that came twice.
-    let kept = find(&deformer.kept_by_pairs, |_| true).unwrap();
-    assert_eq!(kept.temperature(), 0.1);
-    assert!(deformer.deform(&deformer.p, 1.0, false, &mut |_| true).unwrap().positions == deformer.x);
 }
 
 #[test]

@@ -9,7 +9,6 @@ mod affine;
 pub(crate) mod lanes;
 mod matrix;
 mod moments;
-pub(crate) mod pairs;
 mod rotation;
 mod similarity;
 
@@ -88,24 +87,14 @@ impl<'a, const D: usize> Handles<'a, D> {
         if D != 3 {
             return None;
         }
+        let three =
+            |m: &Matrix<D>| -> Matrix<3> { std::array::from_fn(|r| std::array::from_fn(|c| m[r][c])) };
         let Anchor { rotation, scale, linear } = &self.anchor;
-        let (rotation, linear) = (in_three(rotation), in_three(linear));
-        let anchor = Anchor {
-            rotation: std::array::from_fn(|r| rotation[r]),
-            scale: *scale,
-            linear: std::array::from_fn(|r| linear[r]),
-        };
-        let pairs = in_three(self.p).into_iter().zip(in_three(self.q));
+        let anchor = Anchor { rotation: three(rotation), scale: *scale, linear: three(linear) };
+        let pairs = self.p.iter().zip(self.q);
         let points =
             pairs.map(|(p, q)| std::array::from_fn(|k| if k < 3 { p[k] } else { q[k - 3] })).collect();
         Some(lanes::LaneHandles::new(points, self.transform, anchor, frame))
-    }
-
-    /// The kernel of rigid maps in 3D for points that are sorted by pairs.
-    pub(crate) fn pairs<'b>(&self, order: &'b pairs::Order, frame: Frame) -> pairs::PairFrame<'b> {
-        debug_assert!(D == 3 && self.transform == Transform::Rigid);
-        let g = in_three(&self.anchor.rotation);
-        pairs::PairFrame::new(order, &in_three(self.p), &in_three(self.q), &[g[0], g[1], g[2]], frame)
     }
 
     /// Where the point `x` goes, whose weights `relative` and `dominant` are as [`crate::softmax::relative_weights`] gives them.
@@ -125,11 +114,6 @@ impl<'a, const D: usize> Handles<'a, D> {
         let turned = matrix::apply(&map, &arm);
         Local { displacement: std::array::from_fn(|k| turned[k] - arm[k] + moments.shift[k]), map }
     }
-}
-
-/// Points of D coordinates, where D is 3, as the kernels for 3D take them.
-pub(crate) fn in_three<const D: usize>(points: &[[f64; D]]) -> Vec<[f64; 3]> {
-    points.iter().map(|point| std::array::from_fn(|k| point[k])).collect()
 }
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ pub fn best_rotation<const D: usize>(c: &Matrix<D>) -> Matrix<D> {
             (r[0][0], r[0][1], r[1][0], r[1][1]) = (cos, -sin, sin, cos);
         }
         _ => {
-            let full = of_quaternion(largest_eigenvector(horn(c)));
+            let full = of_quaternion(&largest_eigenvector(horn(c)));
             for (row, full) in r.iter_mut().zip(full) {
                 row.copy_from_slice(&full[..D]);
             }
@@ -103,13 +103,12 @@ fn largest_eigenvector(mut n: [[f64; 4]; 4]) -> [f64; 4] {
             largest = i;
         }
     }
-    std::array::from_fn(|k| vectors[k][largest])
+    let u: [f64; 4] = std::array::from_fn(|k| vectors[k][largest]);
+    let length = u.iter().map(|c| c * c).sum::<f64>().sqrt();
+    u.map(|c| c / length)
 }
 
-/// The rotation of a quaternion (w, x, y, z) of any length.
-pub(super) fn of_quaternion(u: [f64; 4]) -> [[f64; 3]; 3] {
-    let length = u.iter().map(|c| c * c).sum::<f64>().sqrt();
-    let [w, x, y, z] = u.map(|c| c / length);
+fn of_quaternion(&[w, x, y, z]: &[f64; 4]) -> [[f64; 3]; 3] {
     [
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
         [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],

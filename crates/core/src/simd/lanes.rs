@@ -36,8 +36,6 @@ pub(crate) trait Lanes: Copy {
     fn div(self, other: Self) -> Self;
     /// `self * b + c`, rounded once where the instruction set can.
     fn mul_add(self, b: Self, c: Self) -> Self;
-    /// `self - a * b`, rounded once where the instruction set can.
-    fn sub_mul(self, a: Self, b: Self) -> Self;
     fn max(self, other: Self) -> Self;
     /// `1 / self` to 11 bits or more, in a fraction of the time of a division.
     fn estimated_inverse(self) -> Self;
@@ -55,13 +53,7 @@ pub(crate) trait Lanes: Copy {
     /// `yes` in the lanes of the mask, `no` in the others.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
-    /// Whether there is a lane in the mask.
-    #[inline(always)]
-    fn any(mask: Self::Mask) -> bool {
-        Self::bits(mask) != 0
-    }
-
-    /// `1 / self` to about 2e-7 of it, for normal numbers; NaN for 0 and infinity.
+    /// `1 / self` to about 2e-7 of it, for normal numbers.
     #[inline(always)]
     fn inverse(self) -> Self {
         let y = self.estimated_inverse();
@@ -69,7 +61,7 @@ pub(crate) trait Lanes: Copy {
         y.mul_add(rest, y)
     }
 
-    /// `1 / sqrt(self)` to about 4e-7 of it, for normal numbers above 0; NaN for 0 and infinity.
+    /// `1 / sqrt(self)` to about 4e-7 of it, for normal numbers above 0.
     #[inline(always)]
     fn inverse_sqrt(self) -> Self {
         let y = self.estimated_inverse_sqrt();
@@ -137,10 +129,6 @@ impl Lanes for Portable {
     #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
         self.mul(b).add(c)
-    }
-    #[inline(always)]
-    fn sub_mul(self, a: Self, b: Self) -> Self {
-        self.sub(a.mul(b))
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
@@ -230,13 +218,8 @@ mod x86 {
             estimated_inverse_sqrt() = _mm256_rsqrt_ps;
         }
         #[inline(always)]
-        fn sub_mul(self, a: Self, b: Self) -> Self {
-            // SAFETY: called in kernels compiled for it, where it was detected; so for all below.
-            unsafe { Avx2(_mm256_fnmadd_ps(a.0, b.0, self.0), _mm256_fnmadd_ps(a.1, b.1, self.1)) }
-        }
-        #[inline(always)]
         fn splat(value: f32) -> Self {
-            // SAFETY: as above.
+            // SAFETY: called in kernels compiled for it, where it was detected; so for all below.
             unsafe { Avx2(_mm256_set1_ps(value), _mm256_set1_ps(value)) }
         }
         #[inline(always)]
@@ -318,13 +301,8 @@ mod x86 {
             estimated_inverse_sqrt() = _mm512_rsqrt14_ps;
         }
         #[inline(always)]
-        fn sub_mul(self, a: Self, b: Self) -> Self {
-            // SAFETY: called in kernels compiled for it, where it was detected; so for all below.
-            unsafe { Avx512(_mm512_fnmadd_ps(a.0, b.0, self.0)) }
-        }
-        #[inline(always)]
         fn splat(value: f32) -> Self {
-            // SAFETY: as above.
+            // SAFETY: called in kernels compiled for it, where it was detected; so for all below.
             unsafe { Avx512(_mm512_set1_ps(value)) }
         }
         #[inline(always)]

@@ -20,7 +20,7 @@ use crate::simd::Simd;
 /// Points in a block.
 pub(crate) const LANES: usize = 16;
 /// Rows of a block after the weights.
-pub(crate) const MORE: usize = 3;
+const MORE: usize = 3;
 /// Blocks that one thread packs at a time.
 const BLOCKS: usize = 64;
 
@@ -83,30 +83,18 @@ multiversion_loops! {
     /// Packs the logits of 16 points (16 x m).
     fn pack(logits: &[f32], temperature: f64, rows: &mut [Row]) = pack_body
 }
-multiversion_loops! {
-    /// Packs the logits of 16 points, which are in the first m rows.
-    pub(crate) fn pack_rows(temperature: f64, rows: &mut [Row]) = pack_rows_body
-}
 
 #[inline(always)]
 fn pack_body<const FMA: bool>(logits: &[f32], temperature: f64, rows: &mut [Row]) {
-    let m = rows.len() - MORE;
-    for (i, row) in rows[..m].iter_mut().enumerate() {
-        for lane in 0..LANES {
-            row.0[lane] = logits[lane * m + i];
-        }
-    }
-    pack_rows_body::<FMA>(temperature, rows);
-}
-
-#[inline(always)]
-fn pack_rows_body<const FMA: bool>(temperature: f64, rows: &mut [Row]) {
     let m = rows.len() - MORE;
     let scale = std::f64::consts::LOG2_E / temperature;
     let (weights, rest) = rows.split_at_mut(m);
     let (mut first, mut second, mut index) =
         ([f32::NEG_INFINITY; LANES], [f32::NEG_INFINITY; LANES], [0u32; LANES]);
-    for (i, row) in weights.iter().enumerate() {
+    for (i, row) in weights.iter_mut().enumerate() {
+        for lane in 0..LANES {
+            row.0[lane] = logits[lane * m + i];
+        }
         let at = i as u32;
         for lane in 0..LANES {
             let l = row.0[lane];
