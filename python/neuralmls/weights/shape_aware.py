@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 # Chosen once, for all shapes, by studies/shape_aware.py; docs/shape-aware.md has the figures.
 POWER = 3.0
 KEPT = 8.0  # logits below the largest by at most this are kept
-TAIL = 4.0  # lower ones fall as this times a logarithm: weights as a power, which a network can learn, not exponentially
+TAIL = 4.0  # lower ones fall as this times a logarithm: weights as a power, which a network can learn
 EXPONENT = 6.0  # of the straight-line distance, where no control point governs
 REACH = 0.75  # of the spacing of the control points: how far along the shape one governs it
 SOFTNESS = 2.0  # the network learns the weights to the power 1/2: what it gives is then sharpened as much

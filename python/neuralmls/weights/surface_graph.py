@@ -1,4 +1,4 @@
-"""Walks over a shape, whatever it is made of: which control point a random one meets first, and the shortest one's length."""
+"""Walks over a shape, whatever it is made of: which control point a random one meets first; the shortest ones."""
 
 from __future__ import annotations
 
@@ -47,11 +47,11 @@ class SurfaceGraph:
         self.nodes = self._links.nodes
 
     def first_met(self, p: Array) -> Array:
-        """Return the probability that a random walk from each node meets each of the points `p` (m, d) before the others.
+        """Return the probability that a random walk from each node meets each of `p` (m, d) before the others.
 
-        The walk takes a link with a probability proportional to what it conducts, so that the result is the harmonic
-        function `h_i` that is 1 at control point i and 0 at the others: (nodes, m), rows sum to 1. It knows how wide the
-        shape is: a walk finds its way out of a trunk into a thin leg seldom, and from the leg to the trunk soon.
+        The walk takes a link with a probability proportional to what it conducts: the result is the harmonic function
+        `h_i` that is 1 at control point i and 0 at the others, (nodes, m), rows sum to 1. It knows how wide the shape
+        is: a walk finds its way from a trunk into a thin leg seldom, and from the leg to the trunk soon.
 
         Source
         ------
@@ -67,15 +67,18 @@ class SurfaceGraph:
         laplacian = scipy("sparse").csc_array((values, (rows, columns)), shape=(count, count))
         sources = np.zeros((count, m))
         np.add.at(sources, (nodes, which), firm)
-        # Symmetric and diagonally dominant: the order alone decides how much the factors fill, and no pivots are needed.
+        # Symmetric and diagonally dominant: no pivots are needed.
         factors = scipy("sparse.linalg").splu(
             laplacian, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
         )
         return np.asarray(factors.solve(sources))
 
     def distances(self, p: Array) -> tuple[Array, Array]:
-        """Return the lengths of the shortest paths from each node to its nearest of the points `p` (m, d): (nodes,); and
-        from each of `p` to the nearest other: (m,), infinite where there is none.
+        """Return the lengths of shortest paths: from each node to its nearest of `p` (m, d), and between these.
+
+        Returns
+        -------
+        (nodes,), and (m,): from each of `p` to the nearest other, infinite where there is none
         """
         count, m = len(self.nodes), len(p)
         which, nodes, _ = self._attached(p)
@@ -104,7 +107,7 @@ class SurfaceGraph:
         return np.asarray(few[farthest_of(self.nodes[few], count)])
 
     def _attached(self, p: Array) -> tuple[Indices, Indices, Array]:
-        """Links of points (m, d) to the nodes near them, at most half as far again as the nearest, and their lengths."""
+        """Links of points (m, d) to nodes near them, at most half as far again as the nearest, and their lengths."""
         far, near = nearest_to(self.nodes).query(p, k=min(ATTACHED, len(self.nodes)))
         near, far = near.reshape(len(p), -1), far.reshape(len(p), -1)
         attached = far <= 1.5 * far[:, :1] + 1e-9

@@ -1,9 +1,9 @@
 """The links of a surface, whatever it is made of: which places are next to each other, and how well a link conducts.
 
-Vertices in one place are one node, and long edges are halved. An edge conducts as the strip of surface along it does: half
-the sum of the cotangents of the angles that face it. Near parts of one component are never linked; components that touch
-or overlap are joined by short links, and what is left by its nearest pair of nodes, so that every place can be reached from
-every other. Points of a cloud, and vertices without a face, are linked to their nearest neighbours.
+Vertices in one place are one node, and long edges are halved. An edge conducts as the strip of surface along it does:
+half the sum of the cotangents of the angles that face it. Near parts of one component are never linked; components that
+touch or overlap are joined by short links, and what is left by its nearest pair of nodes, so that every place can be
+reached from every other. Points of a cloud, and vertices without a face, are linked to their nearest neighbours.
 
 At last all nodes of one connected patch in a small cell become one: a fine mesh is then as cheap as a coarse one.
 """
