@@ -1,7 +1,7 @@
 """The methods that experiments compare, each under one name and with one way to call it.
 
 >>> list(METHODS)
-['neural', 'neural-exact', 'shape-aware', 'classic', 'rbf', 'arap', 'biharmonic']
+['neural', 'neural-exact', 'shape-aware', 'shape-aware-exact', 'classic', 'rbf', 'arap', 'biharmonic']
 >>> square = Surface(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]]))
 >>> METHODS["classic"](square, square.positions, square.positions + 1).tolist()[0]
 [1.0, 1.0, 1.0]
@@ -26,6 +26,8 @@ from neuralmls.weights import NeuralWeights, ShapeAwareWeights, Weights
 
 Array: TypeAlias = NDArray[np.float64]
 SpaceMap: TypeAlias = Callable[[Array], Array]
+
+OURS = "(ours)"  # in the titles of what is not in the paper: docs/beyond-the-paper.md
 
 
 class Geometry(Protocol):
@@ -88,13 +90,13 @@ def neural(
     return _of_weights(title, fitted, transform, temperature, adherence)
 
 
-def shape_aware(title: str = "Shape-aware, exact", *, seed: int = 0) -> Method:
-    """Weights that know the shape, and control points that arrive."""
+def shape_aware(title: str = f"Shape-aware {OURS}", *, adherence: float = 0.0, seed: int = 0) -> Method:
+    """Weights that know the shape, with the options of `Deformer.deform` and of `ShapeAwareWeights.fit`."""
 
     def fitted(shape: Geometry, p: ArrayLike) -> Weights:
         return ShapeAwareWeights.fit(p, shape.positions, shape.faces, seed=seed)
 
-    return _of_weights(title, fitted, adherence=1.0)
+    return _of_weights(title, fitted, adherence=adherence)
 
 
 def classic(title: str = baselines.TITLES["classic"], **options: Any) -> Method:
@@ -154,8 +156,9 @@ def _of_space(title: str, name: str, **options: Any) -> Method:
 
 METHODS: dict[str, Method] = {
     "neural": neural(),
-    "neural-exact": neural("NeuralMLS, exact", adherence=1.0),
+    "neural-exact": neural(f"NeuralMLS, exact {OURS}", adherence=1.0),
     "shape-aware": shape_aware(),
+    "shape-aware-exact": shape_aware(f"Shape-aware, exact {OURS}", adherence=1.0),
     "classic": classic(),
     "rbf": _of_space(baselines.TITLES["rbf"], "rbf"),
     "arap": _of_vertices(baselines.TITLES["arap"], "arap"),

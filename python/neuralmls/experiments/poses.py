@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from neuralmls.arrays import as_points
 from neuralmls.errors import ArgumentError, FileError
-from neuralmls.experiments.methods import METHODS, Array, Method, Surface, classic, neural
+from neuralmls.experiments.methods import METHODS, OURS, Array, Method, Surface, classic, neural
 from neuralmls.metrics.triangles import as_triangles
 from neuralmls.placement import farthest_of
 
@@ -27,10 +27,10 @@ MOST = 6  # poses of a file, spread evenly over it
 POSE_METHODS: dict[str, Method] = METHODS | {
     "classic": classic("Classic MLS, 1/d^4", alpha=2.0),
     "neural": neural("NeuralMLS, 200 steps", steps=200),
-    "neural-exact": neural("NeuralMLS, 200 steps, exact", steps=200, adherence=1.0),
+    "neural-exact": neural(f"NeuralMLS, 200 steps, exact {OURS}", steps=200, adherence=1.0),
 }
 
-QUICK = ("rbf", "classic", "neural", "shape-aware", "arap")  # biharmonic weights take ten times as long
+QUICK = ("rbf", "classic", "neural", "shape-aware-exact", "arap")  # biharmonic weights take ten times as long
 
 
 @dataclass(frozen=True)
