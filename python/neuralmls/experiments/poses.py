@@ -96,8 +96,9 @@ def pose_errors(poses: Poses, method: Method, count: int) -> list[float]:
     diagonal = float(np.linalg.norm(np.ptp(x, axis=0)))
     which = np.linspace(0, len(poses.poses) - 1, min(MOST, len(poses.poses))).astype(int)
     errors = []
+    bound = method.bind(poses.rest, x[chosen])
     for pose in poses.poses[which]:
-        y = method(poses.rest, x[chosen], pose[chosen])
+        y = bound.positions(pose[chosen])
         errors.append(100 * float(np.linalg.norm(y - pose, axis=1).mean()) / diagonal)
     return errors
 
