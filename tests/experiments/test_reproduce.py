@@ -97,7 +97,7 @@ def test_what_is_not_in_the_paper_stands_beside_it_and_says_so(everything, name)
     beyond = {label for label in rows if "(ours)" in label}
     assert beyond == {"neural, exact (ours)", "shape-aware (ours)", "shape-aware, exact (ours)"}
     assert "classic MLS" in rows
-    assert "(ours): what we add to the paper" in report.setting
+    assert "marked (ours) is not in the paper" in report.setting
 
 
 def test_without_the_papers_shapes_the_reports_say_so(everything):

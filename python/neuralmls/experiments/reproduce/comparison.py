@@ -16,7 +16,7 @@ def run(lab: Lab) -> Report:
     report = Report(
         f"Network of width {lab.width}, 48 steps, temperature 1; classic weights 1/d; rigid. KeypointDeformer where "
         "its published weights know the shape; ARAP with the vertices nearest to the control points. Look at how far "
-        f"ends come to their targets (blue), and at what bends on the way. Second row, {BEYOND}"
+        f"ends come to their targets (blue), and at what bends on the way. {BEYOND}"
     )
     medians: dict[str, tuple[float, float]] = {}
     refusals: dict[str, str | None] = {}

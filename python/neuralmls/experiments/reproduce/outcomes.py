@@ -23,8 +23,8 @@ from neuralmls.weights import Weights
 Array = NDArray[np.float64]
 
 BEYOND = (
-    f"{OURS}: what we add to the paper, handles that arrive (exact) and weights taught by distances along the shape; "
-    "see docs/beyond-the-paper.md."
+    f"What is marked {OURS} is not in the paper: handles that arrive (exact), weights taught by distances along the "
+    "shape (shape-aware); see docs/beyond-the-paper.md."
 )
 
 
