@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import struct
@@ -108,6 +109,64 @@ def test_a_scene_opens_in_another_folder(tmp_path):
     shape.write(same / "shape.gltf", shape.positions)
     assert (same / "shape.gltf").read_bytes() == (tmp_path / "shape.gltf").read_bytes()
     assert np.array_equal(nm.read(same / "shape.gltf").positions, shape.positions)
+
+
+def test_a_set_of_files_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
+    """Scene and buffers replace those that were read, so that half of the set would be the end of both."""
+    there = tmp_path / "there"
+    there.mkdir()
+    nm.read(gltf(tmp_path, buffers=2)).write(there / "shape.gltf", nm.read(tmp_path / "shape.gltf").positions + 1)
+    shape = nm.read(there / "shape.gltf")
+    before = {file.name: file.read_bytes() for file in there.iterdir()}
+    assert set(before) == {"shape.gltf", "shape.bin", "shape-2.bin", "skin.png"}
+    full_after(monkeypatch, 2)
+    with pytest.raises(nm.FileError, match=r"shape\.gltf: cannot write: No space left on device$"):
+        shape.write(there / "shape.gltf", shape.positions + 1)
+    assert {file.name: file.read_bytes() for file in there.iterdir()} == before
+    monkeypatch.undo()
+    shape.write(there / "shape.gltf", shape.positions + 1)
+    assert np.array_equal(nm.read(there / "shape.gltf").positions, shape.positions + 1)
+
+
+def test_companions_that_cannot_be_copied_leave_the_shape_unwritten(tmp_path, monkeypatch):
+    there = tmp_path / "there"
+    there.mkdir()
+    (there / "b.obj").write_text("precious")
+    (tmp_path / "a.obj").write_text(TRIANGLE)
+    (tmp_path / "red paint.mtl").write_text("newmtl red\n")
+    shape = nm.read(tmp_path / "a.obj")
+    full_after(monkeypatch, 0)
+    with pytest.raises(nm.FileError, match=r"red paint\.mtl: cannot write: No space left on device$"):
+        shape.write(there / "b.obj", shape.positions + 1)
+    assert {file.name: file.read_bytes() for file in there.iterdir()} == {"b.obj": b"precious"}
+
+
+def full_after(monkeypatch, count):
+    """A disk that has room for so many files."""
+    room = iter(range(count))
+
+    def sync(_descriptor):
+        if next(room, None) is None:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "fsync", sync)
+
+
+def test_a_companion_with_the_name_of_the_output_does_not_take_its_place(tmp_path):
+    there = tmp_path / "there"
+    there.mkdir()
+    (tmp_path / "a.obj").write_text(TRIANGLE.replace("red paint.mtl", "b.obj"))
+    (tmp_path / "b.obj").write_text("newmtl red\n")
+    shape = nm.read(tmp_path / "a.obj")
+    assert shape.write(there / "b.obj", shape.positions + 1) == [there / "b.obj"]
+    assert np.array_equal(nm.read(there / "b.obj").positions, shape.positions + 1)
+
+
+def test_names_as_long_as_the_disk_takes_them_are_written(tmp_path):
+    path = tmp_path / ("\N{CHAIR}" * 62 + ".obj")
+    path.write_text(TRIANGLE)
+    shape = nm.read(path)
+    assert shape.write(path, shape.positions + 1) == [path]
 
 
 def test_nothing_is_replaced_without_leave(tmp_path):

@@ -90,7 +90,7 @@ def deform(
         control_points = ControlPoints.read(points).moved(offsets)
     warnings = deformation.check_points(control_points, points, source)
     moved = bool((control_points.sources != control_points.targets).any())
-    if moved and not to_stdout:
+    if moved:
         _check_side_files(source, output, force=force)
     if not moved:
         warnings.append("no control point is moved, so that the output is the input")
@@ -143,23 +143,21 @@ def _offsets(moves: Sequence[str]) -> dict[str, list[float]]:
 
 
 def _check_side_files(shape: Shape, output: Path, *, force: bool) -> None:
-    """Refuse buffers of a glTF file that are to be written beside the output and are there already."""
-    first = output.with_suffix(".bin")
-    if shape.format != "glTF" or force or not first.is_file():
-        return
-    for name in shape.encode(shape.positions / 2, stem=output.stem)[1]:  # whatever the positions, if they are others
+    """Refuse files that are to be written beside the output, where they are there already or there is no such place."""
+    if output == outputs.STANDARD_OUTPUT:
+        for name in shape.side_files(shape.path.stem):
+            raise ArgumentError(
+                f"standard output takes one file, but this {shape.format} is written with '{name}' beside it: "
+                "name an output file"
+            )
+    for name in shape.side_files(output.stem):
         outputs.check_output(output.parent / name, force=force)
 
 
 def _write(shape: Shape, result: Deformation, output: Path, *, force: bool) -> tuple[list[str], list[str]]:
     """Write the shape; return the files written, and warnings of files beside it that were kept."""
     if output == outputs.STANDARD_OUTPUT:
-        data, side_files = shape.encode(result.positions, maps=result.maps)
-        if side_files:
-            raise ArgumentError(
-                f"standard output takes one file, but this {shape.format} is written with '{next(iter(side_files))}' "
-                "beside it: name an output file"
-            )
+        data, _ = shape.encode(result.positions, maps=result.maps)
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()
         return [], []
