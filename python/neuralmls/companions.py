@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 
 from neuralmls.errors import FileError
+from neuralmls.files import read_bytes
 
 # Statements of an MTL file that name an image: all that start with `map_`, and these.
 _IMAGES = {"bump", "disp", "decal", "refl", "norm"}
@@ -24,7 +25,7 @@ def read_beside(folder: Path, name: str) -> bytes:
     if path is None:
         raise FileError(f"'{name}' leaves the shape's folder")
     try:
-        return path.read_bytes()
+        return read_bytes(path)
     except OSError as error:
         raise FileError(f"cannot read '{name}' beside it: {error.strerror or error}") from error
 

@@ -29,6 +29,20 @@ def as_path(name: str, path: str | os.PathLike[str]) -> Path:
         raise ArgumentError(f"{name}: expected the path of a file, found {path!r}") from None
 
 
+def read_bytes(path: Path) -> bytes:
+    """Return the content of a file or pipe.
+
+    Raises
+    ------
+    OSError
+        It cannot be read; or it is a device, which may have no end.
+    """
+    mode = path.stat().st_mode
+    if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
+        raise OSError("this is a device, not a file")
+    return path.read_bytes()
+
+
 def write_atomically(path: str | os.PathLike[str], data: bytes) -> None:
     """Write `data` to `path`: into a new file beside it, which then takes its name.
 

@@ -13,7 +13,7 @@ from neuralmls import _core
 from neuralmls.arrays import as_points
 from neuralmls.companions import found_beside, make_folders, read_beside, to_copy
 from neuralmls.errors import ArgumentError, FileError
-from neuralmls.files import as_path, write_together
+from neuralmls.files import as_path, read_bytes, write_together
 
 
 class Shape:
@@ -164,7 +164,7 @@ def read(path: str | os.PathLike[str]) -> Shape:
     """
     source = as_path("path", path)
     try:
-        data = source.read_bytes()
+        data = read_bytes(source)
     except OSError as error:
         raise FileError(f"{source}: cannot read: {error.strerror or error}") from error
     try:

@@ -131,6 +131,8 @@ def _offsets(moves: Sequence[str]) -> dict[str, list[float]]:
     for text in moves:
         name, equals, numbers = text.rpartition("=")
         try:
+            if "_" in numbers:  # Python would read 1_000 as a number
+                raise ValueError
             offset = [float(number) for number in numbers.split(",")]
         except ValueError:
             offset = []
