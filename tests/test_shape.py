@@ -5,7 +5,9 @@ from __future__ import annotations
 import errno
 import json
 import os
+import re
 import struct
+import sys
 import threading
 from pathlib import Path
 
@@ -162,6 +164,17 @@ def test_a_companion_with_the_name_of_the_output_does_not_take_its_place(tmp_pat
     assert np.array_equal(nm.read(there / "b.obj").positions, shape.positions + 1)
 
 
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="names are Unicode here")
+def test_names_that_are_no_text_are_written(tmp_path):
+    shape = nm.read(gltf(tmp_path))
+    path = tmp_path / os.fsdecode(b"bent \xff.gltf")
+    assert [os.fsencode(file.name) for file in shape.write(path, shape.positions + 1)] == [
+        b"bent \xff.gltf",
+        "bent \N{REPLACEMENT CHARACTER}.bin".encode(),
+    ]
+    assert np.array_equal(nm.read(path).positions, shape.positions + 1)
+
+
 def test_names_as_long_as_the_disk_takes_them_are_written(tmp_path):
     path = tmp_path / ("\N{CHAIR}" * 62 + ".obj")
     path.write_text(TRIANGLE)
@@ -211,8 +224,9 @@ def test_what_is_no_path_is_refused(tmp_path):
     shape = nm.read(tmp_path / "a.obj")
     points = nm.ControlPoints([[0, 0, 0]])
     for call in (nm.read, nm.ControlPoints.read, points.write, lambda path: shape.write(path, shape.positions)):
-        with pytest.raises(nm.ArgumentError, match="path: expected the path of a file, found None"):
-            call(None)
+        for path in (None, "a\0.obj", "a\ud800.obj"):
+            with pytest.raises(nm.ArgumentError, match=re.escape(f"path: expected the path of a file, found {path!r}")):
+                call(path)
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")

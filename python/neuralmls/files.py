@@ -24,8 +24,10 @@ def as_path(name: str, path: str | os.PathLike[str]) -> Path:
         It is none.
     """
     try:
+        if b"\0" in os.fsencode(path):
+            raise ValueError
         return Path(path)
-    except TypeError:
+    except (TypeError, ValueError):
         raise ArgumentError(f"{name}: expected the path of a file, found {path!r}") from None
 
 
@@ -51,10 +53,12 @@ def write_atomically(path: str | os.PathLike[str], data: bytes) -> None:
 
     Raises
     ------
+    ArgumentError
+        `path` is none.
     FileError
         The folder does not exist, is not writable, or the disk is full. `path` is then as it was.
     """
-    write_together({Path(path): data})
+    write_together({as_path("path", path): data})
 
 
 def write_together(files: Mapping[Path, bytes | Path]) -> None:

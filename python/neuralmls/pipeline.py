@@ -86,7 +86,7 @@ def deform(
         function = weights
         if not np.array_equal(as_points("weights.control_points", function.control_points), sources):
             raise ArgumentError("weights: expected a weight function of the control points p, found one of others")
-    return Deformer(x, function, transform=transform).deform(targets, temperature, adherence=float(exact))
+    return Deformer(x, function, transform=transform).deform(targets, temperature, adherence=float(bool(exact)))
 
 
 def _bounds(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> ArrayLike | None:

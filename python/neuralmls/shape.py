@@ -76,7 +76,7 @@ class Shape:
 
     def side_files(self, stem: str) -> list[str]:
         """The files (glTF buffers) that `write` may write beside a file called after `stem` if the shape has moved."""
-        return self._file.side_files(stem)
+        return self._file.side_files(_sayable(stem))
 
     def encode(
         self, positions: ArrayLike, *, maps: ArrayLike | None = None, stem: str | None = None
@@ -95,7 +95,7 @@ class Shape:
         m = None if maps is None else np.ascontiguousarray(maps, dtype=np.float64)
         if m is not None and m.ndim != 3:
             raise ArgumentError(f"maps: expected an (n, d, d) array, found shape {m.shape}")
-        return self._file.write(x, m, stem)
+        return self._file.write(x, m, None if stem is None else _sayable(stem))
 
     def write(
         self,
@@ -150,6 +150,11 @@ class Shape:
         for sentence in kept:  # at the end: where warnings are errors, all is written first
             warnings.warn(sentence, stacklevel=2)
         return [target, *sides, *copies]
+
+
+def _sayable(name: str) -> str:
+    """A file's name as other files can hold it: bytes in it that are no UTF-8 are replaced."""
+    return os.fsencode(name).decode(errors="replace")
 
 
 def read(path: str | os.PathLike[str]) -> Shape:

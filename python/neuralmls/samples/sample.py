@@ -76,7 +76,9 @@ def write_obj(sample: Sample, path: str | os.PathLike[str]) -> None:
     if target.suffix.lower() != ".obj":
         raise FileError(f"{path}: expected a name that ends in .obj")
     library = target.with_suffix(".mtl")
-    write_together({library: _mtl(sample).encode(), target: _obj(sample, library.name).encode()})
+    write_together(
+        {library: _mtl(sample).encode(), target: _obj(sample, library.name).encode(errors="surrogateescape")}
+    )
 
 
 def _mtl(sample: Sample) -> str:
