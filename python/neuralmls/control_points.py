@@ -158,11 +158,11 @@ class ControlPoints:
             i = self._index(name)
             if not turn.fits(self.dimension):
                 how = {
-                    1: "on a line, cannot turn",
-                    2: "in the plane, turns about no axis",
-                    3: "in space, needs an axis",
+                    1: "on a line: it cannot turn",
+                    2: "in the plane: it turns about no axis",
+                    3: "in space: it turns about an axis, of three numbers",
                 }
-                raise ArgumentError(f"'{name}', {how[self.dimension]}")
+                raise ArgumentError(f"'{name}' is {how[self.dimension]}")
             before = all_turns[i]
             all_turns[i] = turn if before is None else Turn.of(turn.matrix @ before.matrix, turn.scale * before.scale)
         return ControlPoints(self.sources, self.targets, self.names, all_turns)
