@@ -80,9 +80,10 @@ def test_the_documented_examples_are_read_and_valid(tmp_path: Path) -> None:
     jsonschema.validate(json.loads(examples["json"]), SCHEMA)
     for ending in ("json", "csv"):
         points = ControlPoints.read(written(tmp_path, examples[ending], ending))
-        assert points.names == ("seat", "back-top")
-        assert points.sources.tolist() == [[0, 0.45, 0], [0, 0.95, -0.2]]
-        assert points.targets.tolist() == [[0, 0.45, 0], [0, 0.9, -0.4]]
+        assert points.names[:2] == ("seat", "back-top")
+        assert points.sources[:2].tolist() == [[0, 0.45, 0], [0, 0.95, -0.2]]
+        assert points.targets[:2].tolist() == [[0, 0.45, 0], [0, 0.9, -0.4]]
+        assert points.turns[2:] == (() if ending == "csv" else (Turn((0, 1, 0), 40),))
 
 
 def test_unknown_keys_are_passed_over(tmp_path: Path) -> None:
