@@ -91,6 +91,7 @@ class Deformer:
     def deform(
         self,
         q: NDArray[np.float64],
+        turns: NDArray[np.float64] | None,
         temperature: float,
         maps: bool,
         out: NDArray[np.float64] | None,
@@ -106,5 +107,5 @@ def sample_surface(x: NDArray[np.float64], faces: NDArray[np.uint32], count: int
 class ExactHandles:
     def __new__(cls, p: NDArray[np.float64], logits: NDArray[np.float32], transform: str) -> ExactHandles: ...
     def aim(
-        self, q: NDArray[np.float64], temperature: float, adherence: float
+        self, q: NDArray[np.float64], turns: NDArray[np.float64] | None, temperature: float, adherence: float
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...

@@ -27,12 +27,16 @@ ARRIVED = 1e-6
 
 @dataclass(frozen=True)
 class Deformation:
-    """A shape's new positions, and how far each control point ended from its target."""
+    """A shape's new positions, and how far each control point ended from its target, and from its rotation in degrees.
+
+    `off` is NaN for those that carry none.
+    """
 
     positions: Floats
     maps: NDArray[np.float64] | None
     weights: NeuralWeights | ShapeAwareWeights | InverseDistanceWeights
     missed: NDArray[np.float64]
+    off: NDArray[np.float64]
 
 
 def check_size(shape: Shape) -> None:
@@ -93,15 +97,36 @@ def deformed(
     with stages.stage("bind") as report:
         deformer = Deformer(shape.positions, weights, transform=transform, progress=report)
     with stages.stage("move") as report:
-        aim = ExactHandles(weights, transform=transform).aim(points.targets, temperature, float(exact))
+        rotations, scales = points.rotations, points.scales
+        aimed = (
+            ExactHandles(weights, transform=transform)
+            .aim(points.targets, temperature, float(exact), rotations=rotations, scales=scales)
+            .targets
+        )
         maps: NDArray[np.float64] | None = None
         if shape.has_normals:
-            y, maps = deformer.deform(aim.targets, temperature, return_maps=True, progress=report)
+            y, maps = deformer.deform(
+                aimed, temperature, rotations=rotations, scales=scales, return_maps=True, progress=report
+            )
         else:
-            y = deformer.deform(aim.targets, temperature, progress=report)
+            y = deformer.deform(aimed, temperature, rotations=rotations, scales=scales, progress=report)
         handles = Deformer(points.sources, weights, transform=transform)
-        missed = np.linalg.norm(handles.deform(aim.targets, temperature) - points.targets, axis=1)
-    return Deformation(y, maps, weights, missed)
+        arrived, turned = handles.deform(aimed, temperature, rotations=rotations, scales=scales, return_maps=True)
+        missed = np.linalg.norm(arrived - points.targets, axis=1)
+    return Deformation(y, maps, weights, missed, _off(turned, rotations))
+
+
+def _off(maps: NDArray[np.float64], rotations: NDArray[np.float64] | None) -> NDArray[np.float64]:
+    """The angle in degrees between the rotation in each map (m, d, d) and that which was asked for."""
+    d = maps.shape[1]
+    off = np.full(len(maps), np.nan)
+    if rotations is None:
+        return off
+    for i in np.flatnonzero(~np.isnan(rotations[:, 0, 0])):
+        u, _, vt = np.linalg.svd(maps[i] @ rotations[i].T)
+        cosine = (np.trace(u @ vt) - (d - 2)) / 2
+        off[i] = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
+    return off
 
 
 def not_parted(points: ControlPoints, choice: WeightsChoice, result: Deformation) -> list[str]:
@@ -150,5 +175,7 @@ def advice(
         transform=transform,
         temperature=temperature,
         adherence=float(exact),
+        rotations=points.rotations,
+        scales=points.scales,
         names=points.names,
     )
