@@ -45,6 +45,8 @@ export class Pointer {
   readonly #box = document.createElement("div");
   readonly #caster = new Raycaster();
   readonly #from = new Vector2();
+  /** Where the pane is: asked when something begins, for the answer may ask for a layout. */
+  #pane = new DOMRect(0, 0, 1, 1);
   #action: Action | undefined;
 
   constructor(stage: Stage, gizmo: Gizmo, events: PointerEvents) {
@@ -74,6 +76,7 @@ export class Pointer {
       return;
     }
     if (event.button !== 0) return;
+    this.#pane = this.#stage.pane.getBoundingClientRect();
     this.#from.copy(this.#at(event));
     const marker = this.#markerAt(event);
     if (marker >= 0) this.#action = { kind: "press", marker };
@@ -84,14 +87,15 @@ export class Pointer {
   }
 
   #moved(event: PointerEvent): void {
+    this.#gizmo.snap = event.ctrlKey || event.metaKey ? this.step : 0;
     if (!this.#action) {
       if (event.pointerType === "mouse" && event.buttons === 0) {
+        this.#pane = this.#stage.pane.getBoundingClientRect();
         const over = this.#gizmo.hovered || this.#markerAt(event) >= 0;
         this.#stage.pane.classList.toggle("over-marker", over);
       }
       return;
     }
-    this.#gizmo.snap = event.ctrlKey || event.metaKey ? this.step : 0;
     const away = this.#at(event).distanceTo(this.#from);
     if (this.#action.kind === "press" && away > STILL) this.#beginMove(this.#action.marker);
     if (this.#action.kind === "move") {
@@ -124,6 +128,7 @@ export class Pointer {
     this.#action = undefined;
     this.#box.hidden = true;
     this.#stage.orbit.enabled = true;
+    this.#gizmo.away = false;
   }
 
   #beginMove(marker: number): void {
@@ -133,6 +138,7 @@ export class Pointer {
     const plane = new Plane().setFromNormalAndCoplanarPoint(this.#stage.camera.getWorldDirection(new Vector3()), from);
     const grip = ray.intersectPlane(plane, new Vector3()) ?? from;
     this.#action = { kind: "move", plane, from: grip };
+    this.#gizmo.away = true;
     this.#events.beginMove(marker);
   }
 
@@ -154,14 +160,13 @@ export class Pointer {
 
   /** Up is farther away: a quarter of the window is half of the shape's size. */
   #atDepth({ hit, ray }: { hit: Hit; ray: Ray }, event: PointerEvent): Hit {
-    const deeper = (4 * (this.#from.y - this.#at(event).y)) / this.#stage.pane.clientHeight;
+    const deeper = (4 * (this.#from.y - this.#at(event).y)) / this.#pane.height;
     const by = ray.direction.clone().multiplyScalar(deeper);
     return { rest: hit.rest.clone().add(by), shown: hit.shown.clone().add(by) };
   }
 
   #at(event: PointerEvent): Vector2 {
-    const { left, top } = this.#stage.pane.getBoundingClientRect();
-    return new Vector2(event.clientX - left, event.clientY - top);
+    return new Vector2(event.clientX - this.#pane.left, event.clientY - this.#pane.top);
   }
 
   #ray(event: PointerEvent): Ray {
@@ -169,8 +174,8 @@ export class Pointer {
   }
 
   #rayAt(at: Vector2): Ray {
-    const { clientWidth, clientHeight } = this.#stage.pane;
-    const ndc = new Vector2((at.x / clientWidth) * 2 - 1, 1 - (at.y / clientHeight) * 2);
+    const { width, height } = this.#pane;
+    const ndc = new Vector2((at.x / width) * 2 - 1, 1 - (at.y / height) * 2);
     this.#caster.setFromCamera(ndc, this.#stage.camera);
     return this.#caster.ray;
   }
@@ -194,8 +199,7 @@ export class Pointer {
   }
 
   #onScreen(place: Vector3): Vector2 {
-    const { clientWidth, clientHeight } = this.#stage.pane;
-    return toScreen(place, this.#stage.camera, clientWidth, clientHeight);
+    return toScreen(place, this.#stage.camera, this.#pane.width, this.#pane.height);
   }
 
   #showBox(to: Vector2): void {

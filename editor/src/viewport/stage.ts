@@ -32,6 +32,8 @@ export class Stage {
   /** What is seen in the right half, where there are two. */
   showRight: ((right: boolean) => void) | undefined;
   readonly #host: HTMLElement;
+  /** Of the drawing surface, in pixels of the page. */
+  #size = { width: 1, height: 1 };
   #wanted = false;
 
   constructor(host: HTMLElement) {
@@ -89,7 +91,7 @@ export class Stage {
 
   #render(): void {
     const { renderer, scene, camera } = this;
-    const [width, height] = [this.#host.clientWidth, this.#host.clientHeight];
+    const { width, height } = this.#size;
     renderer.setScissorTest(false);
     renderer.clear();
     if (!this.showRight) {
@@ -111,6 +113,7 @@ export class Stage {
   resize(): void {
     const [width, height] = [this.#host.clientWidth, this.#host.clientHeight];
     if (width === 0 || height === 0) return;
+    this.#size = { width, height };
     this.renderer.setSize(width, height, false);
     this.pane.style.width = this.split ? "50%" : "100%";
     const narrow = Math.min(1, this.camera.aspect);
@@ -162,8 +165,9 @@ export class Stage {
   /** Neither what is near nor what is far is cut off. */
   #setDepths(): void {
     const away = this.camera.position.distanceTo(this.orbit.target);
-    this.camera.near = Math.max(0.002, away / 60);
-    this.camera.far = away + 20;
+    const far = away + 20;
+    if (this.camera.far === far) return;
+    Object.assign(this.camera, { near: Math.max(0.002, away / 60), far });
     this.camera.updateProjectionMatrix();
   }
 }

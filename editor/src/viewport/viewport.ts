@@ -8,7 +8,8 @@ import { leader, type PointId, selected, type Session } from "../model/session.t
 import type { Slot } from "../model/slot.ts";
 import type { Vec3 } from "../model/vec3.ts";
 import type { View } from "../model/view.ts";
-import { type GpuMotion, Kernel, type RestVertices } from "../shader/kernel.ts";
+import { type GlState, type GpuMotion, Kernel, type RestVertices } from "../shader/kernel.ts";
+import { FrameTimes } from "./frameTimes.ts";
 import { Gizmo } from "./gizmo.ts";
 import { colourOf, type Marker, Markers } from "./markers.ts";
 import { type Hit, Picking } from "./picking.ts";
@@ -38,21 +39,20 @@ export class Viewport {
   readonly #markers = new Markers();
   readonly #gizmo: Gizmo;
   readonly #pointer: Pointer;
+  readonly #times = new FrameTimes();
   readonly #sides: Partial<Record<Slot, { view: ShapeView; bound: Bound | undefined; frame?: Frame }>> = {};
   #picking: Picking | undefined;
   #box: Box = { centre: [0, 0, 0], half: 1 };
   #dim: 1 | 2 | 3 = 3;
   #view: View;
   #stale = true;
-  /** Milliseconds of handlers since the last frame. */
-  #handling = 0;
 
   constructor(host: HTMLElement, history: History, view: View) {
     this.#history = history;
     this.#view = view;
     this.stage = new Stage(host);
     const gl = this.stage.renderer.getContext() as WebGL2RenderingContext;
-    this.#kernel = new Kernel(gl, () => this.stage.renderer.resetState());
+    this.#kernel = new Kernel(gl, this.stage.renderer.state as GlState);
     this.stage.scene.add(this.#markers.object);
     this.#gizmo = new Gizmo(this.stage, this.stage.scene, {
       begin: () => history.begin("Move"),
@@ -76,7 +76,7 @@ export class Viewport {
     });
     this.stage.startOrbit();
     this.stage.onFrame = () => this.#frame();
-    this.stage.onDrawn = (start) => this.#measure(start);
+    this.stage.onDrawn = (start) => this.#times.tell(start, history.inGesture);
     history.subscribe(() => this.invalidate());
   }
 
@@ -249,9 +249,7 @@ export class Viewport {
   }
 
   #drag(to: (place: Vec3) => Vec3): void {
-    const start = performance.now();
     this.#history.preview((session) => moveSelected(session, this.#view.moves, to));
-    this.#handling += performance.now() - start;
   }
 
   #frame(gizmo = true): void {
@@ -267,14 +265,6 @@ export class Viewport {
     this.#markers.setSize(MARKER_PIXELS, this.stage.renderer.getPixelRatio());
     this.#markers.update(this.#markersOf(session));
     if (gizmo) this.#gizmo.place(this.#pivot(session), session.selection.length > 1 ? this.#view.tool : "translate");
-  }
-
-  /** Tells the Performance API how long JavaScript took for a frame of a drag: the pointer's handlers and the drawing. */
-  #measure(start: number): void {
-    if (this.#history.inGesture) {
-      performance.measure("neuralmls-drag-frame", { start, duration: this.#handling + performance.now() - start });
-    }
-    this.#handling = 0;
   }
 
   /** Weights that are still being fitted: what was bound last moves as far as its control points are still there. */
@@ -366,6 +356,8 @@ export class Viewport {
 
   #showSide(right: boolean): void {
     const { main, comparison } = this.#sides;
+    // What one drags by is on the side that takes the pointer.
+    this.#gizmo.visible = !right;
     if (main) main.view.object.visible = !right || !comparison;
     if (comparison) comparison.view.object.visible = right;
   }
