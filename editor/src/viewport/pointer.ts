@@ -1,6 +1,6 @@
 /**
- * What the pointer does on the shape: a click adds or selects, a drag of a marker moves freely, Shift and drag selects a box,
- * Alt adds at a chosen depth. All else is left to the camera.
+ * What the pointer does on the shape: a click adds or selects, a drag of a marker moves freely, Shift and drag (or a drag
+ * alone, where boxes are chosen) selects a box, Alt adds at a chosen depth. All else is left to the camera.
  */
 
 import { type Camera, Plane, Ray, Raycaster, Vector2, Vector3 } from "three";
@@ -13,6 +13,8 @@ import type { Stage } from "./stage.ts";
 export interface PointerEvents {
   /** The markers as they are shown, relative to the shape's box. */
   markers(): readonly Vector3[];
+  /** Whether a drag beside the markers selects in a box without Shift, which fingers do not have. */
+  boxes(): boolean;
   isSelected(marker: number): boolean;
   meet(ray: Ray, at: Vector2, through: boolean): Hit | undefined;
   click(hit: Hit | undefined): void;
@@ -80,10 +82,11 @@ export class Pointer {
     this.#from.copy(this.#at(event));
     const marker = this.#markerAt(event);
     if (marker >= 0) this.#action = { kind: "press", marker };
-    else if (event.shiftKey) this.#action = { kind: "box" };
+    else if (event.shiftKey || this.#events.boxes()) this.#action = { kind: "box" };
     else if (event.altKey) this.#beginDepth(event);
     else this.#action = { kind: "click" };
-    this.#stage.orbit.enabled = this.#action?.kind === "click";
+    // A second finger is the camera's, so that it knows of the first.
+    this.#stage.orbit.enabled = this.#action?.kind === "click" || (this.#action?.kind === "box" && !event.shiftKey);
   }
 
   #moved(event: PointerEvent): void {
@@ -114,11 +117,14 @@ export class Pointer {
     const still = this.#at(event).distanceTo(this.#from) <= STILL;
     this.#end();
     if (action.kind === "press") {
-      this.#events.select([action.marker], event.shiftKey || event.ctrlKey || event.metaKey ? "toggle" : "replace");
+      const several = event.shiftKey || event.ctrlKey || event.metaKey || this.#events.boxes();
+      this.#events.select([action.marker], several ? "toggle" : "replace");
     } else if (action.kind === "move" || action.kind === "depth") {
       this.#events.commit();
     } else if (action.kind === "box" && !still) {
       this.#events.select(this.#markersInBox(this.#at(event)), "add");
+    } else if (action.kind === "box" && !event.shiftKey) {
+      this.#events.click(undefined);
     } else if (action.kind === "click" && still) {
       this.#events.click(this.#events.meet(this.#ray(event), this.#at(event), false));
     }

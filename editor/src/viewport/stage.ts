@@ -13,6 +13,7 @@ import {
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { Clouds } from "./cloud.ts";
 
 const FIELD_OF_VIEW = 32;
 /** Room around the shape. */
@@ -20,6 +21,7 @@ const MARGIN = 1.22;
 
 export class Stage {
   readonly scene = new Scene();
+  readonly clouds = new Clouds();
   readonly camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
   readonly renderer: WebGLRenderer;
   /** The part of the drawing surface that takes the pointer: all of it, or its left half. */
@@ -71,6 +73,12 @@ export class Stage {
     return this.showRight !== undefined;
   }
 
+  /** Whether a drag of the left button or of one finger turns the view. */
+  set turns(turns: boolean) {
+    this.orbit.mouseButtons.LEFT = turns ? MOUSE.ROTATE : null;
+    this.orbit.touches.ONE = turns ? TOUCH.ROTATE : null;
+  }
+
   /** Draws soon. */
   request(): void {
     if (this.#wanted) return;
@@ -96,6 +104,7 @@ export class Stage {
     renderer.clear();
     if (!this.showRight) {
       renderer.setViewport(0, 0, width, height);
+      this.clouds.draw(renderer, camera, 0, width, height);
       renderer.render(scene, camera);
       return;
     }
@@ -105,6 +114,7 @@ export class Stage {
       renderer.setViewport(x, 0, width / 2, height);
       renderer.setScissor(x, 0, width / 2, height);
       this.showRight(right);
+      this.clouds.draw(renderer, camera, x, width / 2, height);
       renderer.render(scene, camera);
     }
     this.showRight(false);

@@ -61,6 +61,7 @@ export class Viewport {
     });
     this.#pointer = new Pointer(this.stage, this.#gizmo, {
       markers: () => history.session.points.map((point) => this.#toView(point[this.#view.moves])),
+      boxes: () => this.#view.boxes,
       isSelected: (marker) => history.session.selection.includes(history.session.points[marker].id),
       meet: (ray, at, through) => this.#meet(ray, at, through),
       click: (hit) => this.#click(hit),
@@ -159,6 +160,7 @@ export class Viewport {
   setView(view: View): void {
     const split = view.comparison;
     this.#view = view;
+    this.stage.turns = !view.boxes;
     if (split !== this.stage.split) {
       this.stage.showRight = split ? (right) => this.#showSide(right) : undefined;
       if (!split) this.#showSide(false);
@@ -341,7 +343,7 @@ export class Viewport {
   #add(side: Slot, drawn: Drawn): ShapeView {
     const view = new ShapeView(this.#kernel, drawn);
     this.#sides[side] = { view, bound: undefined };
-    this.stage.scene.add(view.object);
+    (drawn.index ? this.stage.scene : this.stage.clouds.scene).add(view.object);
     view.object.visible = side === "main";
     return view;
   }
@@ -349,7 +351,7 @@ export class Viewport {
   #remove(side: Slot): void {
     const shown = this.#sides[side];
     if (!shown) return;
-    this.stage.scene.remove(shown.view.object);
+    shown.view.object.removeFromParent();
     shown.view.dispose();
     delete this.#sides[side];
   }
