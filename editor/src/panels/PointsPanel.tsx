@@ -65,6 +65,9 @@ export function PointsPanel() {
   );
 }
 
+/** Of the shape's size. */
+const share = (part: number): string => (part < 0.0005 ? "0 %" : `${(100 * part).toFixed(part < 0.1 ? 1 : 0)} %`);
+
 function PointList({ points }: { points: readonly ControlPoint[] }) {
   const app = useApp();
   const { session, distances, shape } = useAppState();
@@ -90,8 +93,8 @@ function PointList({ points }: { points: readonly ControlPoint[] }) {
               <span class="name" title={point.name}>{point.name}</span>
               {twin !== null && twin !== undefined && <small title={`Its twin: ${names.get(twin)}`}>↔ <span>{names.get(twin)}</span></small>}
               {point.locked && <Icon name="lock" />}
-              <span class={`distance ${short_ ? "short" : ""}`} title="How far it ends from its target">
-                {isMoved(point) && away !== undefined ? distance(away, size) : ""}
+              <span class={`distance ${short_ ? "short" : ""}`} title={away === undefined ? "" : `It ends ${distance(away, size)} from its target`}>
+                {isMoved(point) && away !== undefined ? share(away / size) : ""}
               </span>
             </button>
           </li>

@@ -49,7 +49,7 @@ const SHADE_FRAGMENT = /* glsl */ `
 uniform sampler2D colours, depths;
 uniform vec2 corner;  // of the window, in pixels
 uniform vec2 clip;    // the camera's near and far
-const float REACH = 1.5, STRENGTH = 110.0;
+const float REACH = 1.5, STRENGTH = 90.0, DARKEST = 0.4;
 
 float logDepth(float z) { return log2(clip.x * clip.y / (clip.y - z * (clip.y - clip.x))); }
 
@@ -62,7 +62,7 @@ void main() {
     float turn = 0.785398163 * float(i);
     nearer += max(0.0, own - logDepth(texture2D(depths, at + REACH * vec2(cos(turn), sin(turn)) / size).x));
   }
-  gl_FragColor = vec4(texture2D(colours, at).rgb * exp(-STRENGTH * nearer / 8.0), 1.0);
+  gl_FragColor = vec4(texture2D(colours, at).rgb * mix(DARKEST, 1.0, exp(-STRENGTH * nearer / 8.0)), 1.0);
   gl_FragDepth = z;
 }
 `;
@@ -70,9 +70,23 @@ void main() {
 /** What all points of all clouds share. */
 const windowHeight = { value: 1 };
 
-/** The material of a cloud of `count` points: discs as large as to close a surface that they are spread over. */
-export function cloudMaterial(count: number, colour: Color, vertexColors: boolean): ShaderMaterial {
-  const diameter = Math.min(0.03, 2.4 / Math.sqrt(count));
+/** Cells of a grid along a side of the shape's box, of which those with points tell how large a surface these are spread over. */
+const CELLS = 32;
+const LARGEST = 0.08;
+
+/** How large the discs of points (relative to the shape's box, 3 numbers each) must be to close a surface. */
+export function discDiameter(positions: Float32Array): number {
+  const taken = new Set<number>();
+  const cell = (c: number): number => Math.min(CELLS - 1, Math.max(0, Math.floor(((c + 1) / 2) * CELLS)));
+  for (let i = 0; i < positions.length; i += 3) {
+    taken.add((cell(positions[i]) * CELLS + cell(positions[i + 1])) * CELLS + cell(positions[i + 2]));
+  }
+  const spacing = (2 / CELLS) * Math.sqrt(taken.size / (positions.length / 3));
+  return Math.min(LARGEST, 1.7 * spacing);
+}
+
+/** The material of a cloud of points. */
+export function cloudMaterial(diameter: number, colour: Color, vertexColors: boolean): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: POINT_VERTEX,
     fragmentShader: POINT_FRAGMENT,

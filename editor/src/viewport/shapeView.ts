@@ -16,7 +16,7 @@ import {
   Vector3,
 } from "three";
 import type { Colouring } from "../model/view.ts";
-import { cloudMaterial } from "./cloud.ts";
+import { cloudMaterial, discDiameter } from "./cloud.ts";
 import type { BoundVertices, GpuMotion, Kernel, RestVertices } from "../shader/kernel.ts";
 
 /** What is drawn of a shape. */
@@ -82,8 +82,9 @@ export class ShapeView {
       this.#wire.frustumCulled = false;
     } else {
       const coloured = drawn.colours !== undefined;
-      this.#plainMaterial = cloudMaterial(this.bound.count, new Color(coloured ? 0xffffff : 0xa4b1c6), coloured);
-      this.#tintMaterial = cloudMaterial(this.bound.count, new Color(0xffffff), true);
+      const diameter = discDiameter(drawn.rest.positions);
+      this.#plainMaterial = cloudMaterial(diameter, new Color(coloured ? 0xffffff : 0xa4b1c6), coloured);
+      this.#tintMaterial = cloudMaterial(diameter, new Color(0xffffff), true);
       this.#node = new Points(this.#plain, this.#plainMaterial);
     }
     this.#node.frustumCulled = false;
