@@ -148,8 +148,10 @@ export class Viewport {
     const places = new Float32Array(3 * points.length);
     const turned = new Float32Array(3 * points.length);
     points.forEach((point, i) => {
-      const map = new Matrix3().fromArray(maps, 9 * point).invert(); // read by columns: the inverse transpose, row by row
-      const normal = new Vector3().fromArray(normals, 3 * i).applyMatrix3(map).normalize();
+      const map = new Matrix3().fromArray(maps, 9 * point);
+      const side = Math.sign(map.determinant()); // of the winding, even under a reflection
+      map.invert(); // read by columns: the inverse transpose, row by row
+      const normal = new Vector3().fromArray(normals, 3 * i).applyMatrix3(map).normalize().multiplyScalar(side);
       normal.toArray(turned, 3 * i);
       for (let c = 0; c < 3; c++) places[3 * i + c] = (y[3 * point + c] - this.#box.centre[c]) / this.#box.half;
     });
