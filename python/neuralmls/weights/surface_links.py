@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 CELL = 0.02  # side of a cell, in halves of the shape's longest side
-SPACING = 2 * CELL  # longest edge
+SPACING = 0.06  # longest edge
 TOUCH = 0.03  # components nearer than this touch
 MOST = 40_000  # nodes: long edges are no longer halved beyond
 NEIGHBOURS = 8  # of a point of a cloud
@@ -70,7 +70,7 @@ def surface_links(x: Array, faces: NDArray[Any] | None) -> Links:
     --------
     Two right angles face the diagonal of a square, and their cotangents are 0; halves of 1 face the sides.
 
-    >>> square = np.array([[0.0, 0], [0.04, 0], [0.04, 0.04], [0, 0.04]])
+    >>> square = np.array([[0.0, 0], [0.028, 0], [0.028, 0.028], [0, 0.028]])
     >>> links = surface_links(square, np.array([[0, 1, 2], [0, 2, 3]]))
     >>> dict(zip(map(tuple, links.ends.tolist()), links.conductances.round(3).tolist()))
     {(0, 1): 0.5, (0, 2): 0.5, (0, 3): 0.01, (1, 3): 0.5, (2, 3): 0.5}
