@@ -3,6 +3,9 @@ import { isMoved } from "../model/session.ts";
 import { distance } from "./controls.tsx";
 import { useAppState } from "./useStore.ts";
 
+// Made once: that takes a hundred times as long as to use it.
+const CLOCK = new Intl.DateTimeFormat([], { hour: "2-digit", minute: "2-digit" });
+
 /** How things stand, quietly. */
 export function StatusBar() {
   const { fit, comparisonFit, session, shape, distances, view, autosaved, slowFrames } = useAppState();
@@ -24,7 +27,7 @@ export function StatusBar() {
       <span class="spacer" />
       {view.moves === "position" && <span class="mode">moving places at rest</span>}
       {view.before && <span class="mode">before</span>}
-      {autosaved && <span title="In this browser; nothing is uploaded">kept {autosaved.toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" })}</span>}
+      {autosaved && <span title="In this browser; nothing is uploaded">kept {CLOCK.format(autosaved)}</span>}
     </footer>
   );
 }
