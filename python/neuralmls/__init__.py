@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from neuralmls.placement import farthest_points
     from neuralmls.point_tree import PointTree
     from neuralmls.shape import Shape, read
+    from neuralmls.turns import Turn
     from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
     from neuralmls.weights.softmax import softmax
 
@@ -43,6 +44,7 @@ __all__ = [
     "PointTree",
     "Shape",
     "ShapeAwareWeights",
+    "Turn",
     "Weights",
     "__version__",
     "advise",
@@ -70,6 +72,7 @@ _HOMES = {
     "PointTree": "point_tree",
     "Shape": "shape",
     "ShapeAwareWeights": "weights",
+    "Turn": "turns",
     "Weights": "weights",
     "advise": "advice",
     "deform": "pipeline",

@@ -17,6 +17,7 @@ from neuralmls.arrays import as_number
 from neuralmls.errors import ArgumentError
 from neuralmls.probe import Array, Motion, Probe
 from neuralmls.protocol import Transform, Weights
+from neuralmls.turns import Rotations, Scales
 
 Kind: TypeAlias = Literal["misses", "folds", "torn", "ungoverned"]
 
@@ -67,6 +68,8 @@ def advise(
     transform: Transform = "rigid",
     temperature: float = 1.0,
     adherence: float = 0.0,
+    rotations: Rotations = None,
+    scales: Scales = None,
     names: Sequence[str] | None = None,
 ) -> list[Advice]:
     """Return what is likely bad about a deformation, and what would help; nothing where all control points stay or
@@ -88,7 +91,7 @@ def advise(
     weights : Weights
         The weight function of the control points, in the units of `x`.
     targets : (m, d)
-    transform, temperature, adherence
+    transform, temperature, adherence, rotations, scales
         As `Deformer` has them.
     names : sequence of m str, optional
         What to call the control points; p1, p2, ... if not given.
@@ -108,7 +111,7 @@ def advise(
     >>> [advice.kind for advice in advise(x, None, weights, [[0.0], [0.7], [0.3], [1.0]])]
     ['folds']
     """
-    probe = Probe(x, faces, weights, targets, transform)
+    probe = Probe(x, faces, weights, targets, transform, rotations=rotations, scales=scales)
     named = tuple(f"p{i + 1}" for i in range(len(probe.p))) if names is None else tuple(names)
     if len(named) != len(probe.p):
         raise ArgumentError(f"names: expected {len(probe.p)} of them, found {len(named)}")

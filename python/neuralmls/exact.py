@@ -11,6 +11,7 @@ from neuralmls import _core
 from neuralmls.arrays import as_number, as_points
 from neuralmls.errors import ArgumentError
 from neuralmls.protocol import Transform, Weights
+from neuralmls.turns import Rotations, Scales, as_turns
 
 
 @dataclass(frozen=True)
@@ -75,7 +76,15 @@ class ExactHandles:
         logits = np.ascontiguousarray(weights.logits(self._p), np.float32)
         self._core = _core.ExactHandles(self._p, logits, transform)
 
-    def aim(self, targets: ArrayLike, temperature: float = 1.0, adherence: float = 1.0) -> Aim:
+    def aim(
+        self,
+        targets: ArrayLike,
+        temperature: float = 1.0,
+        adherence: float = 1.0,
+        *,
+        rotations: Rotations = None,
+        scales: Scales = None,
+    ) -> Aim:
         """Return the effective targets for `targets`.
 
         Parameters
@@ -86,6 +95,8 @@ class ExactHandles:
             Of the softmax, as in `Deformer.deform`.
         adherence : float, 0 to 1
             1: all the way; 0: where plain moving least squares takes them; between: that part of the way between.
+        rotations : (m, d, d), scales : (m,), optional
+            As in `Deformer.deform`, to which they are to be handed too.
 
         Raises
         ------
@@ -95,5 +106,6 @@ class ExactHandles:
         q = as_points("targets", targets, self._p.shape[1])
         if len(q) != len(self._p):
             raise ArgumentError(f"targets: expected {len(self._p)} of them, found {len(q)}")
-        aimed, misses = self._core.aim(q, as_number("temperature", temperature, 0), adherence)
+        turns = as_turns(rotations, scales, *q.shape)
+        aimed, misses = self._core.aim(q, turns, as_number("temperature", temperature, 0), adherence)
         return Aim(aimed, misses)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,9 +13,9 @@ from neuralmls.deformer import Deformer
 from neuralmls.errors import ArgumentError
 from neuralmls.exact import ExactHandles
 from neuralmls.metrics import beside, jacobians
-from neuralmls.metrics.triangles import as_triangles
-from neuralmls.placement import sample_faces
+from neuralmls.placement import sample_surface
 from neuralmls.protocol import Transform, Weights
+from neuralmls.turns import Rotations, Scales
 from neuralmls.weights.softmax import softmax
 
 Array: TypeAlias = NDArray[np.float64]
@@ -60,12 +60,20 @@ class Motion:
         return float((self.stretch() > STRETCH).mean())
 
 
+class _Turns(TypedDict):
+    """What control points carry besides their targets, as `Deformer.deform` takes it."""
+
+    rotations: Rotations
+    scales: Scales
+
+
 class Probe:
     """Places on a shape, bound to the weights of control points that have targets.
 
     Parameters
     ----------
     x : (n, d), faces : (f, 3) integers or None, weights : Weights, targets : (m, d), transform : Transform
+    rotations : (m, d, d), scales : (m,), optional
         As `neuralmls.advise` has them.
 
     Raises
@@ -81,6 +89,9 @@ class Probe:
         weights: Weights,
         targets: ArrayLike,
         transform: Transform = "rigid",
+        *,
+        rotations: Rotations = None,
+        scales: Scales = None,
     ) -> None:
         self.p = as_points("weights.control_points", weights.control_points)
         points = as_points("x", x, self.p.shape[1])
@@ -88,6 +99,7 @@ class Probe:
             raise ArgumentError("x: expected at least one point, found none")
         self.q = as_points("targets", targets, points.shape[1])
         self.transform = transform
+        self._turns: _Turns = {"rotations": rotations, "scales": scales}
         self.side = 2 * box_around(points)[1]
         self.places = _places(points, faces)
         self._weights = weights
@@ -98,14 +110,18 @@ class Probe:
 
     def motion(self, temperature: float, adherence: float) -> Motion:
         """What the deformation does at the places."""
-        aimed = self._exact.aim(self.q, temperature, adherence).targets
-        values = [np.asarray(deformer.deform(aimed, temperature), np.float64) for deformer in self._beside]
-        return Motion(np.asarray(self._deformer.deform(aimed, temperature), np.float64), jacobians(values, self._step))
+        aimed = self._exact.aim(self.q, temperature, adherence, **self._turns).targets
+        deformed, *values = (
+            np.asarray(deformer.deform(aimed, temperature, **self._turns), np.float64)
+            for deformer in (self._deformer, *self._beside)
+        )
+        return Motion(deformed, jacobians(values, self._step))
 
     def missed(self, transform: Transform, temperature: float, adherence: float) -> Array:
         """How far each control point ends from its target, (m,)."""
-        aimed = ExactHandles(self._weights, transform=transform).aim(self.q, temperature, adherence).targets
-        arrived = Deformer(self.p, self._weights, transform=transform).deform(aimed, temperature)
+        exact = ExactHandles(self._weights, transform=transform)
+        aimed = exact.aim(self.q, temperature, adherence, **self._turns).targets
+        arrived = Deformer(self.p, self._weights, transform=transform).deform(aimed, temperature, **self._turns)
         return np.asarray(np.linalg.norm(arrived - self.q, axis=1))
 
     def weight(self, place: int, temperature: float) -> Array:
@@ -127,14 +143,10 @@ class Probe:
 
 def _places(x: Array, faces: ArrayLike | None) -> Array:
     """Places to look at (k, d): on the surface by area, or points of the cloud."""
-    rng = np.random.default_rng(0)
-    if faces is not None and np.size(faces):
-        origin = (x.min(axis=0) + x.max(axis=0)) / 2  # samples keep their digits far from the origin
-        _, samples = sample_faces(x - origin, as_triangles(faces, len(x)), PLACES, rng)
-        if len(samples):
-            places: Array = samples + origin
-            return places
-    return x if len(x) <= PLACES else x[np.sort(rng.permutation(len(x))[:PLACES])]
+    samples = x[:0] if faces is None else sample_surface(x, faces, PLACES)
+    if len(samples):
+        return samples
+    return x if len(x) <= PLACES else x[np.sort(np.random.default_rng(0).permutation(len(x))[:PLACES])]
 
 
 def _nearest(x: Array, p: Array) -> tuple[Array, NDArray[np.int64]]:

@@ -10,7 +10,7 @@
 //! by `q' <- q' + (q - f(p; q'))`, with Anderson's acceleration (Anderson 1965; Walker, Ni 2011). The unknowns are the targets alone, so
 //! it costs a few frames of as many points as there are control points.
 
-use crate::deformer::Deformer;
+use crate::deformer::{Deformer, Pose};
 use crate::error::Error;
 use crate::mls::Transform;
 
@@ -49,19 +49,20 @@ impl ExactHandles {
         Ok(ExactHandles { handles, dim, p: p.to_vec() })
     }
 
-    /// The effective targets for the targets `q` (m x dim), at `temperature` > 0.
+    /// The effective targets for the targets of `pose` (m x dim), at `temperature` > 0; its turns are taken as they are.
     ///
     /// With `adherence` 1 the control points go to their targets; with 0 to where MLS takes them, and the effective targets are the
     /// targets; between, to that part of the way from the one to the other. Where that cannot be reached, the nearest that was found.
     ///
     /// # Errors
     /// As [`Deformer::deform`]; where the adherence is not from 0 to 1.
-    pub fn aim(&self, q: &[f64], temperature: f64, adherence: f64) -> Result<Aim, Error> {
+    pub fn aim<'a>(&self, pose: impl Into<Pose<'a>>, temperature: f64, adherence: f64) -> Result<Aim, Error> {
+        let Pose { q, turns } = pose.into();
         if !(0.0..=1.0).contains(&adherence) {
             return Err(Error::argument("adherence", format!("expected 0 to 1, found {adherence}")));
         }
         let arrive = |targets: &[f64]| -> Result<Vec<f64>, Error> {
-            Ok(self.handles.deform(targets, temperature, false, &mut |_| true)?.positions)
+            Ok(self.handles.deform(Pose { q: targets, turns }, temperature, false, &mut |_| true)?.positions)
         };
         let soft = arrive(q)?;
         let goal: Vec<f64> = soft.iter().zip(q).map(|(soft, q)| soft + adherence * (q - soft)).collect();

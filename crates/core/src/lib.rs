@@ -34,7 +34,7 @@ mod simd;
 pub mod softmax;
 pub mod tree;
 
-pub use deformer::{Deformed, Deformer};
+pub use deformer::{Deformed, Deformer, Pose};
 pub use error::Error;
 pub use exact::{Aim, ExactHandles};
 pub use frame::Frame;

@@ -1,6 +1,7 @@
 //! Handles that arrive.
 
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use neuralmls_core::Pose;
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::deformer::transform;
@@ -31,12 +32,14 @@ impl ExactHandles {
         &self,
         py: Python<'py>,
         q: PyReadonlyArray2<'py, f64>,
+        turns: Option<PyReadonlyArray3<'py, f64>>,
         temperature: f64,
         adherence: f64,
     ) -> PyResult<Aim<'py>> {
-        let (shape, q) = ([q.shape()[0], q.shape()[1]], q.as_slice()?);
+        let turns = turns.as_ref().map(|turns| turns.as_slice()).transpose()?;
+        let (shape, pose) = ([q.shape()[0], q.shape()[1]], Pose { q: q.as_slice()?, turns });
         let aim =
-            py.detach(|| self.0.aim(q, temperature, adherence)).map_err(|error| from_core(error, None))?;
+            py.detach(|| self.0.aim(pose, temperature, adherence)).map_err(|error| from_core(error, None))?;
         Ok((PyArray1::from_vec(py, aim.targets).reshape(shape)?, PyArray1::from_vec(py, aim.misses)))
     }
 }

@@ -2,7 +2,7 @@
 
 use js_sys::{Array, Float32Array, Float64Array};
 use neuralmls_core::progress::Progress;
-use neuralmls_core::{Deformer, Error, InverseDistance, PointTree, Transform};
+use neuralmls_core::{Deformer, Error, InverseDistance, PointTree, Pose, Transform};
 use wasm_bindgen::prelude::*;
 
 use crate::refused;
@@ -85,13 +85,21 @@ impl Fit {
         Float32Array::from(self.control_points.logits())
     }
 
-    /// Where the control points land when they are pulled to `q` (m x dim).
+    /// Where the control points land when they are pulled to `q` (m x dim) and turned by `turns` (m x dim x dim, NaN for those that are
+    /// not; undefined: none is).
     ///
     /// # Errors
-    /// Where `q` does not fit, or the temperature is not above 0.
-    pub fn land(&mut self, q: &[f64], transform: &str, temperature: f64) -> Result<Float64Array, JsError> {
+    /// Where `q` or `turns` does not fit, or the temperature is not above 0.
+    pub fn land(
+        &mut self,
+        q: &[f64],
+        turns: Option<Vec<f64>>,
+        transform: &str,
+        temperature: f64,
+    ) -> Result<Float64Array, JsError> {
         self.control_points.set_transform(named(transform)?);
-        let landed = self.control_points.deform(q, temperature, false, &mut |_| true).map_err(refused)?;
+        let pose = Pose { q, turns: turns.as_deref() };
+        let landed = self.control_points.deform(pose, temperature, false, &mut |_| true).map_err(refused)?;
         Ok(Float64Array::from(&landed.positions[..]))
     }
 
@@ -102,14 +110,16 @@ impl Fit {
     pub fn deform(
         &mut self,
         q: &[f64],
+        turns: Option<Vec<f64>>,
         transform: &str,
         temperature: f64,
         maps: bool,
         tell: &js_sys::Function,
     ) -> Result<Array, JsError> {
         self.points.set_transform(named(transform)?);
+        let pose = Pose { q, turns: turns.as_deref() };
         let deformed =
-            self.points.deform(q, temperature, maps, &mut crate::reporter(tell)).map_err(refused)?;
+            self.points.deform(pose, temperature, maps, &mut crate::reporter(tell)).map_err(refused)?;
         let result = Array::of1(&Float64Array::from(&deformed.positions[..]));
         if let Some(maps) = deformed.maps {
             result.push(&Float64Array::from(&maps[..]));

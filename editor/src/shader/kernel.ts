@@ -7,6 +7,7 @@
 import type { Transform } from "../model/settings.ts";
 import { anchor } from "./anchor.ts";
 import { DEFORM_VERTEX_SHADER, NO_FRAGMENTS } from "./glsl.ts";
+import { isStill, type TurnedPoint } from "./turned.ts";
 
 /** What is drawn: each vertex belongs to a point of the shape, whose logits it has. */
 export interface RestVertices {
@@ -23,6 +24,7 @@ export interface GpuMotion {
   /** m x 3 */
   p: Float64Array;
   q: Float64Array;
+  turned: readonly TurnedPoint[];
   transform: Transform;
   temperature: number;
   tint: Tint;
@@ -31,9 +33,11 @@ export interface GpuMotion {
 const TRANSFORM_CODES: Record<Transform, number> = { rigid: 0, similarity: 1, affine: 2 };
 const TINT_CODES: Record<Tint["by"], number> = { nothing: 0, weight: 1, point: 2 };
 const UNIFORMS = [
-  "logits", "controlPoints", "m", "transform", "temperature", "moved",
+  "logits", "controlPoints", "m", "transform", "temperature", "moved", "anyTurned",
   "anchorRotation", "anchorScale", "anchorLinear", "tintBy", "tinted",
 ] as const; // prettier-ignore
+/** Of the table of control points: p, q, colours, and the rows of rotations with squares and scales beside. */
+const ROWS = 6;
 /** Larger than any logit that means anything, and safe to compute with, unlike infinity. */
 const LARGEST_LOGIT = 1e30;
 
@@ -164,9 +168,9 @@ export class BoundVertices {
       gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, padded);
       this.#m = m;
       this.#colours = colours;
-      this.#table = new Float32Array(4 * m * 3);
+      this.#table = new Float32Array(4 * m * ROWS);
       this.#kernel.bindTexture("controlPoints", this.#controlPoints);
-      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, m, 3, 0, gl.RGBA, gl.FLOAT, null);
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, m, ROWS, 0, gl.RGBA, gl.FLOAT, null);
     });
     return true;
   }
@@ -176,20 +180,21 @@ export class BoundVertices {
     if (this.#logits && motion.p.length === 3 * this.#m) this.#kernel.use(() => this.#compute(motion));
   }
 
-  #compute({ p, q, transform, temperature, tint }: GpuMotion): void {
+  #compute({ p, q, turned, transform, temperature, tint }: GpuMotion): void {
     const { gl, program, state, uniforms } = this.#kernel;
     const m = this.#m;
     state.useProgram(program);
     this.#kernel.bindTexture("logits", this.#logits ?? null);
     this.#kernel.bindTexture("controlPoints", this.#controlPoints);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, m, 3, gl.RGBA, gl.FLOAT, this.#fill(p, q));
-    const { rotation, scale, linear } = anchor(p, q);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, m, ROWS, gl.RGBA, gl.FLOAT, this.#fill(p, q, turned));
+    const { rotation, scale, linear } = anchor(p, q, turned);
     gl.uniform1i(uniforms.logits, UNITS.logits);
     gl.uniform1i(uniforms.controlPoints, UNITS.controlPoints);
     gl.uniform1i(uniforms.m, m);
     gl.uniform1i(uniforms.transform, TRANSFORM_CODES[transform]);
     gl.uniform1f(uniforms.temperature, temperature);
-    gl.uniform1i(uniforms.moved, p.every((c, at) => c === q[at]) ? 0 : 1);
+    gl.uniform1i(uniforms.moved, p.every((c, at) => c === q[at]) && turned.every(isStill) ? 0 : 1);
+    gl.uniform1i(uniforms.anyTurned, turned.length > 0 ? 1 : 0);
     gl.uniformMatrix3fv(uniforms.anchorRotation, true, rotation);
     gl.uniform1f(uniforms.anchorScale, scale);
     gl.uniformMatrix3fv(uniforms.anchorLinear, true, linear);
@@ -238,7 +243,7 @@ export class BoundVertices {
     if (this.#logits) gl.deleteTexture(this.#logits);
   }
 
-  #fill(p: Float64Array, q: Float64Array): Float32Array {
+  #fill(p: Float64Array, q: Float64Array, turned: readonly TurnedPoint[]): Float32Array {
     const [table, m] = [this.#table, this.#m];
     for (let i = 0; i < m; i++) {
       for (let c = 0; c < 3; c++) {
@@ -246,6 +251,12 @@ export class BoundVertices {
         table[4 * (m + i) + c] = q[3 * i + c];
         table[4 * (2 * m + i) + c] = this.#colours[3 * i + c];
       }
+    }
+    table.fill(0, 12 * m);
+    for (const { index, rotation, scale, square } of turned) {
+      for (let row = 0; row < 3; row++) table.set(rotation.slice(3 * row, 3 * row + 3), 4 * ((3 + row) * m + index));
+      table[4 * (3 * m + index) + 3] = square;
+      table[4 * (4 * m + index) + 3] = scale;
     }
     return table;
   }

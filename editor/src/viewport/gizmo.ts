@@ -1,14 +1,14 @@
 /** The gizmo: moves, turns or scales the selected control points along axes, in planes and freely. */
 
-import { Group, type Matrix4, Object3D, type Scene, Vector3 } from "three";
+import { Group, type Matrix4, Object3D, type Quaternion, type Scene, Vector3 } from "three";
 import { TransformControls } from "three/addons/controls/TransformControls.js";
 import type { Tool } from "../model/view.ts";
 import type { Stage } from "./stage.ts";
 
 export interface GizmoEvents {
   begin(): void;
-  /** How places (relative to the shape's box) move, from those with which the drag began. */
-  move(map: (place: Vector3) => Vector3): void;
+  /** How places (relative to the shape's box) move, from those with which the drag began, and how they turn, if they do. */
+  move(map: (place: Vector3) => Vector3, turn: Quaternion | undefined): void;
   end(): void;
 }
 
@@ -18,6 +18,7 @@ export class Gizmo {
   readonly #shown = new Group();
   readonly #proxy = new Object3D();
   readonly #start = new Vector3();
+  #dim: 1 | 2 | 3 = 3;
   /** Steps that translations keep to, relative to the shape's box; 0: none. */
   snap = 0;
 
@@ -37,7 +38,9 @@ export class Gizmo {
       this.#start.copy(this.#proxy.position);
       events.begin();
     });
-    this.#controls.addEventListener("objectChange", () => events.move(this.#map()));
+    this.#controls.addEventListener("objectChange", () => {
+      events.move(this.#map(), this.#controls.mode === "rotate" ? this.#proxy.quaternion : undefined);
+    });
     this.#controls.addEventListener("mouseUp", () => {
       events.end();
       this.#settle();
@@ -46,7 +49,15 @@ export class Gizmo {
 
   /** Only the axes that the shape has. */
   setDimension(dim: 1 | 2 | 3): void {
-    Object.assign(this.#controls, { showY: dim > 1, showZ: dim > 2, showXY: dim > 1, showYZ: dim > 2, showXZ: dim > 2 });
+    this.#dim = dim;
+    this.#showAxes();
+  }
+
+  /** A shape in the plane turns about z alone. */
+  #showAxes(): void {
+    const [dim, turns] = [this.#dim, this.#controls.mode === "rotate"];
+    const axes = { showX: dim > 2 || !turns, showY: dim > 2 || (dim > 1 && !turns), showZ: dim > 2 || (dim > 1 && turns) };
+    Object.assign(this.#controls, { ...axes, showXY: dim > 1, showYZ: dim > 2, showXZ: dim > 2 });
   }
 
   get dragging(): boolean {
@@ -82,7 +93,10 @@ export class Gizmo {
       return;
     }
     this.#proxy.position.copy(at);
-    if (this.#controls.mode !== tool) this.#controls.setMode(tool);
+    if (this.#controls.mode !== tool) {
+      this.#controls.setMode(tool);
+      this.#showAxes();
+    }
     if (!this.#controls.object) this.#controls.attach(this.#proxy);
   }
 

@@ -1,14 +1,15 @@
 /** The view of the shape and its control points; every edit that it makes is a command or a gesture of the history. */
 
-import { Box3, Matrix3, type Ray, Sphere, Vector2, Vector3 } from "three";
+import { Box3, Matrix3, type Quaternion, type Ray, Sphere, Vector2, Vector3 } from "three";
 import type { SerializedBVH } from "three-mesh-bvh";
-import { addPoint, type Box, type History, moveSelected, select } from "../commands/index.ts";
+import { addPoint, type Box, type History, moveSelected, select, turnSelected } from "../commands/index.ts";
 import { twinOf } from "../model/mirror.ts";
 import { leader, type PointId, selected, type Session } from "../model/session.ts";
 import type { Slot } from "../model/slot.ts";
 import type { Vec3 } from "../model/vec3.ts";
-import type { View } from "../model/view.ts";
+import type { Tool, View } from "../model/view.ts";
 import { type GlState, type GpuMotion, Kernel, type RestVertices } from "../shader/kernel.ts";
+import { turnedPoints } from "../shader/turned.ts";
 import { FrameTimes } from "./frameTimes.ts";
 import { Gizmo } from "./gizmo.ts";
 import { colourOf, type Marker, Markers } from "./markers.ts";
@@ -56,7 +57,7 @@ export class Viewport {
     this.stage.scene.add(this.#markers.object);
     this.#gizmo = new Gizmo(this.stage, this.stage.scene, {
       begin: () => history.begin("Move"),
-      move: (map) => this.#drag((place) => this.#toFile(map(this.#toView(place)))),
+      move: (map, turn) => this.#drag((place) => this.#toFile(map(this.#toView(place))), turn),
       end: () => history.commit(),
     });
     this.#pointer = new Pointer(this.stage, this.#gizmo, {
@@ -252,8 +253,12 @@ export class Viewport {
     this.stage.home([...corners, ...targets], this.#dim < 3);
   }
 
-  #drag(to: (place: Vec3) => Vec3): void {
-    this.#history.preview((session) => moveSelected(session, this.#view.moves, to));
+  #drag(to: (place: Vec3) => Vec3, turn?: Quaternion): void {
+    this.#history.preview((session) => {
+      // One that is turned stays in its place, to the last bit.
+      const moved = turn && session.selection.length === 1 ? session : moveSelected(session, this.#view.moves, to);
+      return turn && this.#view.moves === "target" ? turnSelected(moved, [turn.x, turn.y, turn.z, turn.w]) : moved;
+    });
   }
 
   #frame(gizmo = true): void {
@@ -268,7 +273,14 @@ export class Viewport {
     }
     this.#markers.setSize(MARKER_PIXELS, this.stage.renderer.getPixelRatio());
     this.#markers.update(this.#markersOf(session));
-    if (gizmo) this.#gizmo.place(this.#pivot(session), session.selection.length > 1 ? this.#view.tool : "translate");
+    if (gizmo) this.#gizmo.place(this.#pivot(session), this.#tool(session));
+  }
+
+  /** What the gizmo does: there are things that one control point, one at rest, or one on a line cannot. */
+  #tool({ selection }: Session): Tool {
+    const { tool, moves } = this.#view;
+    const can = selection.length > 1 || (tool === "rotate" && moves === "target");
+    return can && (tool !== "rotate" || this.#dim > 1) ? tool : "translate";
   }
 
   /** Weights that are still being fitted: what was bound last moves as far as its control points are still there. */
@@ -298,7 +310,9 @@ export class Viewport {
         : at >= 0
           ? ({ by: "weight", of: at } as const)
           : ({ by: "nothing" } as const);
-    return { p: places, q: targets, transform, temperature, tint };
+    const turns = new Map(session.points.map((point) => [point.id, this.#atRest ? undefined : point.turn]));
+    const turned = turnedPoints(places, ids.map((id) => turns.get(id)));
+    return { p: places, q: targets, turned, transform, temperature, tint };
   }
 
   #markersOf(session: Session): Marker[] {

@@ -1,7 +1,7 @@
 /** A worker: the core compiled to WebAssembly, and what it holds for the main thread. */
 
 import initialise, { type Fit, Points, ShapeFile } from "../wasm/neuralmls_wasm.js";
-import { measure, narrow, relative, widen } from "./coordinates.ts";
+import { measure, narrow, narrowMaps, relative, widen } from "./coordinates.ts";
 import type { Answer, Ask, Give, Moved, Operation, Question } from "./messages.ts";
 import { CoreError, type Fitted, type Motion, type Opened, type Saved, type Stage } from "./protocol.ts";
 
@@ -67,14 +67,14 @@ const operations: { [O in Operation]: (ask: Ask<O>, tell: Tell) => Give<O> } = {
   },
 
   deform({ motion, maps }, tell) {
-    const { targets, transform, temperature } = inDimension(motion);
-    const [positions, turned] = present(fitted).deform(targets, transform, temperature, maps, tell("deform"));
+    const { targets, turns, transform, temperature } = inDimension(motion);
+    const [positions, turned] = present(fitted).deform(targets, turns, transform, temperature, maps, tell("deform"));
     return { positions, maps: turned ?? null } as Moved;
   },
 
   land({ motion }) {
-    const { targets, transform, temperature } = inDimension(motion);
-    const landed = present(fitted).land(targets, transform, temperature) as Float64Array<ArrayBuffer>;
+    const { targets, turns, transform, temperature } = inDimension(motion);
+    const landed = present(fitted).land(targets, turns, transform, temperature) as Float64Array<ArrayBuffer>;
     return widen(landed, present(points).dim);
   },
 
@@ -133,7 +133,9 @@ function sharing(ownLogits: Float32Array, m: number): number[] {
 }
 
 function inDimension(motion: Motion): Motion {
-  return { ...motion, targets: narrow(motion.targets, present(points).dim) };
+  const { dim } = present(points);
+  const turns = motion.turns && { turns: narrowMaps(motion.turns, dim) };
+  return { ...motion, ...turns, targets: narrow(motion.targets, dim) };
 }
 
 function present<T>(value: T | undefined): T {

@@ -3,6 +3,7 @@
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Page } from "@playwright/test";
+import type { Turn } from "../../src/model/turn.ts";
 import { data, pages, samples } from "./tools.ts";
 
 export interface Compared {
@@ -17,7 +18,7 @@ export interface Compared {
 
 declare global {
   interface Window {
-    compare(name: string, base64: string, p: number[], q: number[], weights: object, motions: object[]): Promise<Compared[]>;
+    compare(name: string, base64: string, p: number[], q: number[], turned: (Turn | undefined)[], weights: object, motions: object[]): Promise<Compared[]>;
   }
 }
 
@@ -62,11 +63,11 @@ export function published(): Case | null {
 }
 
 /** By every map at each of three temperatures, with the weights of one fit. */
-export async function compare(page: Page, { file, p, q }: Case, weights: object): Promise<Compared[]> {
+export async function compare(page: Page, { file, p, q }: Case, weights: object, turned: (Turn | undefined)[] = []): Promise<Compared[]> {
   await page.goto(`${pages}/shader.html`);
   await page.waitForFunction(() => window.compare);
   return page.evaluate(
-    ([base64, p, q, weights, motions]) => window.compare("shape.obj", base64, p, q, weights, motions),
-    [file.toString("base64"), p.flat(), q.flat(), weights, motions] as const,
+    ([base64, p, q, turned, weights, motions]) => window.compare("shape.obj", base64, p, q, turned, weights, motions),
+    [file.toString("base64"), p.flat(), q.flat(), turned, weights, motions] as const,
   );
 }

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from neuralmls.advice import Advice, advise
 from neuralmls.cli.stages import Stages
 from neuralmls.cli.weights import WeightsChoice
-from neuralmls.control_points import ControlPoints
+from neuralmls.control_points import LARGEST, ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ControlPointError, FileError
 from neuralmls.exact import ExactHandles
@@ -19,7 +19,6 @@ from neuralmls.protocol import Transform
 from neuralmls.shape import Shape
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, softmax
 
-LARGEST = 1e150  # units
 # A control point with less of the weight at its own place shares it; the training aims at 0.9.
 OWNED = 0.85
 # An exact control point that is farther from its target than this part of the longest side has not arrived.
@@ -28,12 +27,16 @@ ARRIVED = 1e-6
 
 @dataclass(frozen=True)
 class Deformation:
-    """A shape's new positions, and how far each control point ended from its target."""
+    """A shape's new positions, and how far each control point ended from its target, and from its rotation in degrees.
+
+    `off` is NaN for those that carry none.
+    """
 
     positions: Floats
     maps: NDArray[np.float64] | None
     weights: NeuralWeights | ShapeAwareWeights | InverseDistanceWeights
     missed: NDArray[np.float64]
+    off: NDArray[np.float64]
 
 
 def check_size(shape: Shape) -> None:
@@ -56,7 +59,7 @@ def check_points(points: ControlPoints, file: Path, shape: Shape) -> list[str]:
     Raises
     ------
     ControlPointError
-        They have another dimension than the shape; the message names both files.
+        They have another dimension than the shape, or are nowhere near anything; the message names both files.
     """
     try:
         return points.check(shape.bounds)
@@ -94,15 +97,36 @@ def deformed(
     with stages.stage("bind") as report:
         deformer = Deformer(shape.positions, weights, transform=transform, progress=report)
     with stages.stage("move") as report:
-        aim = ExactHandles(weights, transform=transform).aim(points.targets, temperature, float(exact))
+        rotations, scales = points.rotations, points.scales
+        aimed = (
+            ExactHandles(weights, transform=transform)
+            .aim(points.targets, temperature, float(exact), rotations=rotations, scales=scales)
+            .targets
+        )
         maps: NDArray[np.float64] | None = None
         if shape.has_normals:
-            y, maps = deformer.deform(aim.targets, temperature, return_maps=True, progress=report)
+            y, maps = deformer.deform(
+                aimed, temperature, rotations=rotations, scales=scales, return_maps=True, progress=report
+            )
         else:
-            y = deformer.deform(aim.targets, temperature, progress=report)
+            y = deformer.deform(aimed, temperature, rotations=rotations, scales=scales, progress=report)
         handles = Deformer(points.sources, weights, transform=transform)
-        missed = np.linalg.norm(handles.deform(aim.targets, temperature) - points.targets, axis=1)
-    return Deformation(y, maps, weights, missed)
+        arrived, turned = handles.deform(aimed, temperature, rotations=rotations, scales=scales, return_maps=True)
+        missed = np.linalg.norm(arrived - points.targets, axis=1)
+    return Deformation(y, maps, weights, missed, _off(turned, rotations))
+
+
+def _off(maps: NDArray[np.float64], rotations: NDArray[np.float64] | None) -> NDArray[np.float64]:
+    """The angle in degrees between the rotation in each map (m, d, d) and that which was asked for."""
+    d = maps.shape[1]
+    off = np.full(len(maps), np.nan)
+    if rotations is None:
+        return off
+    for i in np.flatnonzero(~np.isnan(rotations[:, 0, 0])):
+        u, _, vt = np.linalg.svd(maps[i] @ rotations[i].T)
+        cosine = (np.trace(u @ vt) - (d - 2)) / 2
+        off[i] = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
+    return off
 
 
 def not_parted(points: ControlPoints, choice: WeightsChoice, result: Deformation) -> list[str]:
@@ -151,5 +175,7 @@ def advice(
         transform=transform,
         temperature=temperature,
         adherence=float(exact),
+        rotations=points.rotations,
+        scales=points.scales,
         names=points.names,
     )
