@@ -17,6 +17,7 @@ from neuralmls.turns import Turn
 # How far outside of the shape's box (in longest sides of it) a control point is no longer taken for intended.
 FAR_SOURCE = 1.0
 FAR_TARGET = 10.0
+LARGEST = 1e150  # units; beyond it, squares of lengths overflow
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -204,7 +205,8 @@ class ControlPoints:
         Raises
         ------
         ControlPointError
-            The control points have another dimension than the shape.
+            The control points have another dimension than the shape, or a coordinate so large that no length could
+            be measured.
         """
         low, high = np.asarray(bounds, dtype=np.float64)
         if low.shape != (self.dimension,):
@@ -217,6 +219,12 @@ class ControlPoints:
             (self.sources, "position", FAR_SOURCE),
             (self.targets, "target", FAR_TARGET),
         ):
+            huge = np.flatnonzero((np.abs(points) > LARGEST).any(axis=1))
+            if huge.size:
+                listed = _listed(self.names[i] for i in huge)
+                raise ControlPointError(
+                    f"the {what} of {listed} has a coordinate beyond {LARGEST:g}: no coordinates of a real thing"
+                )
             distance = np.linalg.norm(np.maximum(np.maximum(low - points, points - high), 0.0), axis=1)
             far = [self.names[i] for i in np.flatnonzero(distance > limit * side)]
             if far:

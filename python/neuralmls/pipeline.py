@@ -93,7 +93,7 @@ def deform(
         if not np.array_equal(as_points("weights.control_points", function.control_points), sources):
             raise ArgumentError("weights: expected a weight function of the control points p, found one of others")
     deformer = Deformer(x, function, transform=transform)
-    return deformer.deform(targets, temperature, rotations=rotations, scales=scales, adherence=float(exact))
+    return deformer.deform(targets, temperature, rotations=rotations, scales=scales, adherence=float(bool(exact)))
 
 
 def _bounds(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> ArrayLike | None:

@@ -13,8 +13,7 @@ from neuralmls.deformer import Deformer
 from neuralmls.errors import ArgumentError
 from neuralmls.exact import ExactHandles
 from neuralmls.metrics import beside, jacobians
-from neuralmls.metrics.triangles import as_triangles
-from neuralmls.placement import sample_faces
+from neuralmls.placement import sample_surface
 from neuralmls.protocol import Transform, Weights
 from neuralmls.turns import Rotations, Scales
 from neuralmls.weights.softmax import softmax
@@ -144,14 +143,10 @@ class Probe:
 
 def _places(x: Array, faces: ArrayLike | None) -> Array:
     """Places to look at (k, d): on the surface by area, or points of the cloud."""
-    rng = np.random.default_rng(0)
-    if faces is not None and np.size(faces):
-        origin = (x.min(axis=0) + x.max(axis=0)) / 2  # samples keep their digits far from the origin
-        _, samples = sample_faces(x - origin, as_triangles(faces, len(x)), PLACES, rng)
-        if len(samples):
-            places: Array = samples + origin
-            return places
-    return x if len(x) <= PLACES else x[np.sort(rng.permutation(len(x))[:PLACES])]
+    samples = x[:0] if faces is None else sample_surface(x, faces, PLACES)
+    if len(samples):
+        return samples
+    return x if len(x) <= PLACES else x[np.sort(np.random.default_rng(0).permutation(len(x))[:PLACES])]
 
 
 def _nearest(x: Array, p: Array) -> tuple[Array, NDArray[np.int64]]:

@@ -246,7 +246,7 @@ def test_gltf_buffers_are_called_after_the_output(run, here, data):
     assert ran.code == 2
     assert ran.err == "neuralmls: error: bent.bin: there is such a file already; --force overwrites it\n"
     assert not (here / "bent.gltf").exists()
-    ran = run(*gltf, "-o", "-")
+    ran = run(*gltf[:4], "--move", "p1=0,0.2,0", "--steps", "1000000", "-o", "-")
     assert ran.code == 2
     assert "chair_A.bin" in ran.err
 

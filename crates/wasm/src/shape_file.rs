@@ -76,7 +76,7 @@ impl ShapeFile {
     /// Where there are not so many distinct ones.
     pub fn farthest_points(&self, count: usize, seed: u64) -> Result<Float64Array, JsError> {
         let faces = self.0.faces().unwrap_or_default();
-        placement::farthest_points(self.0.positions(), self.0.dim(), faces, count, seed)
+        placement::farthest_points(self.0.positions(), self.0.dim(), faces, count, seed, &mut |_| true)
             .map(|places| Float64Array::from(&places[..]))
             .map_err(refused)
     }

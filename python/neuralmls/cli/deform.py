@@ -101,7 +101,7 @@ def deform(
         control_points = control_points.turned({name: Turn(tuple(axis), angle) for name, (axis, angle) in axes.items()})
     warnings = deformation.check_points(control_points, points, source)
     moved = bool((control_points.sources != control_points.targets).any()) or control_points.is_turned
-    if moved and not to_stdout:
+    if moved:
         _check_side_files(source, output, force=force)
     if not moved:
         warnings.append("no control point is moved, so that the output is the input")
@@ -140,7 +140,7 @@ def _offsets(moves: Sequence[str]) -> Iterator[tuple[str, list[float]]]:
     """What `--move NAME=dx,dy,dz` says."""
     for name, numbers, text in _named("--move", "moved", moves):
         try:
-            yield name, [float(number) for number in numbers]
+            yield name, [_number(number) for number in numbers]
         except ValueError:
             raise ArgumentError(f"--move: expected NAME=dx,dy,dz, found '{text}'") from None
 
@@ -150,10 +150,10 @@ def _axes(turns: Sequence[str]) -> Iterator[tuple[str, tuple[list[float], float]
     axes = {"x": [1.0, 0.0, 0.0], "y": [0.0, 1.0, 0.0], "z": [0.0, 0.0, 1.0]}
     for name, (*letters, degrees), text in _named("--turn", "turned", turns):
         try:
-            known = axes.get("".join(letters)) or [float(number) for number in letters]
+            known = axes.get("".join(letters)) or [_number(number) for number in letters]
             if len(known) not in (0, 3):
                 raise ValueError
-            yield name, (known, float(degrees))
+            yield name, (known, _number(degrees))
         except ValueError:
             expected = "NAME=AXIS,DEGREES with the axis x, y, z or three numbers (none in the plane)"
             raise ArgumentError(f"--turn: expected {expected}, found '{text}'") from None
@@ -170,24 +170,29 @@ def _named(option: str, done: str, texts: Sequence[str]) -> Iterator[tuple[str, 
         yield name, numbers.split(",") if name else ["no name"], text
 
 
+def _number(text: str) -> float:
+    """A number as a person writes it: Python would read 1_000 as one, too."""
+    if "_" in text:
+        raise ValueError
+    return float(text)
+
+
 def _check_side_files(shape: Shape, output: Path, *, force: bool) -> None:
-    """Refuse buffers of a glTF file that are to be written beside the output and are there already."""
-    first = output.with_suffix(".bin")
-    if shape.format != "glTF" or force or not first.is_file():
-        return
-    for name in shape.encode(shape.positions / 2, stem=output.stem)[1]:  # whatever the positions, if they are others
+    """Refuse files that are to be written beside the output, where they are there already or there is no such place."""
+    if output == outputs.STANDARD_OUTPUT:
+        for name in shape.side_files(shape.path.stem):
+            raise ArgumentError(
+                f"standard output takes one file, but this {shape.format} is written with '{name}' beside it: "
+                "name an output file"
+            )
+    for name in shape.side_files(output.stem):
         outputs.check_output(output.parent / name, force=force)
 
 
 def _write(shape: Shape, result: Deformation, output: Path, *, force: bool) -> tuple[list[str], list[str]]:
     """Write the shape; return the files written, and warnings of files beside it that were kept."""
     if output == outputs.STANDARD_OUTPUT:
-        data, side_files = shape.encode(result.positions, maps=result.maps)
-        if side_files:
-            raise ArgumentError(
-                f"standard output takes one file, but this {shape.format} is written with '{next(iter(side_files))}' "
-                "beside it: name an output file"
-            )
+        data, _ = shape.encode(result.positions, maps=result.maps)
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()
         return [], []

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from neuralmls.advice import Advice, advise
 from neuralmls.cli.stages import Stages
 from neuralmls.cli.weights import WeightsChoice
-from neuralmls.control_points import ControlPoints
+from neuralmls.control_points import LARGEST, ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ControlPointError, FileError
 from neuralmls.exact import ExactHandles
@@ -19,7 +19,6 @@ from neuralmls.protocol import Transform
 from neuralmls.shape import Shape
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, softmax
 
-LARGEST = 1e150  # units
 # A control point with less of the weight at its own place shares it; the training aims at 0.9.
 OWNED = 0.85
 # An exact control point that is farther from its target than this part of the longest side has not arrived.
@@ -60,7 +59,7 @@ def check_points(points: ControlPoints, file: Path, shape: Shape) -> list[str]:
     Raises
     ------
     ControlPointError
-        They have another dimension than the shape; the message names both files.
+        They have another dimension than the shape, or are nowhere near anything; the message names both files.
     """
     try:
         return points.check(shape.bounds)

@@ -117,6 +117,8 @@ def _length(value: float, side: float) -> str:
     """A length in file units, to about a hundred-thousandth of the shape; what is rounding only is 0."""
     if value < 1e-7 * side:
         return "0"
+    if value >= 1e9:
+        return f"{value:.6g}"
     digits = max(4 - floor(log10(side)), 0)
     text = f"{value:.{digits}f}"
     return text if float(text) > 0 else f"< {10.0**-digits:.{digits}f}"
