@@ -27,6 +27,7 @@ sys.exit(main())
 def built(here: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (here / "static").mkdir()
     (here / "static" / "index.html").write_text("<title>the editor</title>")
+    (here / "static" / server.POLICY).write_text("default-src 'self'")
     monkeypatch.setitem(server.EditorServer.__init__.__kwdefaults__, "static", here / "static")
     return here
 

@@ -329,7 +329,8 @@ void main() {
   y = x + (map * arm - arm) + (qk - pk) + second * moments.sumShift;
   if (transform == AFFINE) {
     mat3 cofactors = mat3(cross(map[1], map[2]), cross(map[2], map[0]), cross(map[0], map[1]));
-    turned = (dot(map[0], cofactors[0]) < 0.0 ? -1.0 : 1.0) * (cofactors * normal);
+    // Along the inverse transpose, and on the side of the winding even under a reflection.
+    turned = cofactors * normal;
   } else {
     turned = map * normal;
   }

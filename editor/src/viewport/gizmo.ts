@@ -1,6 +1,6 @@
 /** The gizmo: moves, turns or scales the selected control points along axes, in planes and freely. */
 
-import { type Matrix4, Object3D, type Quaternion, type Scene, Vector3 } from "three";
+import { Group, type Matrix4, Object3D, type Quaternion, type Scene, Vector3 } from "three";
 import { TransformControls } from "three/addons/controls/TransformControls.js";
 import type { Tool } from "../model/view.ts";
 import type { Stage } from "./stage.ts";
@@ -14,6 +14,8 @@ export interface GizmoEvents {
 
 export class Gizmo {
   readonly #controls: TransformControls;
+  readonly #scene: Scene;
+  readonly #shown = new Group();
   readonly #proxy = new Object3D();
   readonly #start = new Vector3();
   #dim: 1 | 2 | 3 = 3;
@@ -21,13 +23,16 @@ export class Gizmo {
   snap = 0;
 
   constructor(stage: Stage, scene: Scene, events: GizmoEvents) {
+    this.#scene = scene;
     this.#controls = new TransformControls(stage.camera, stage.pane);
     this.#controls.setSize(0.78);
     this.#controls.setColors(0xe0483e, 0x55a630, 0x3d7fe0, 0xffb020);
-    scene.add(this.#proxy, this.#controls.getHelper());
+    this.#shown.add(this.#controls.getHelper());
+    scene.add(this.#proxy, this.#shown);
     this.#controls.addEventListener("change", () => stage.request());
     this.#controls.addEventListener("dragging-changed", ({ value }) => {
       stage.orbit.enabled = !value;
+      this.#show(!value);
     });
     this.#controls.addEventListener("mouseDown", () => {
       this.#start.copy(this.#proxy.position);
@@ -62,6 +67,22 @@ export class Gizmo {
   /** Whether the pointer is over one of its handles. */
   get hovered(): boolean {
     return this.#controls.axis !== null;
+  }
+
+  set visible(visible: boolean) {
+    this.#shown.visible = visible;
+  }
+
+  /** Neither seen nor asked where the pointer is, for as long as something else is dragged. */
+  set away(away: boolean) {
+    this.#controls.enabled = !away;
+    this.#show(!away);
+  }
+
+  /** While something is dragged it is the shape that one looks at, and a frame is to be quick. */
+  #show(shown: boolean): void {
+    if (shown) this.#scene.add(this.#shown);
+    else this.#shown.removeFromParent();
   }
 
   /** Puts the gizmo at a place, or takes it away. Not during its own drag. */

@@ -8,8 +8,9 @@ import { leader, type PointId, selected, type Session } from "../model/session.t
 import type { Slot } from "../model/slot.ts";
 import type { Vec3 } from "../model/vec3.ts";
 import type { Tool, View } from "../model/view.ts";
-import { type GpuMotion, Kernel, type RestVertices } from "../shader/kernel.ts";
+import { type GlState, type GpuMotion, Kernel, type RestVertices } from "../shader/kernel.ts";
 import { turnedPoints } from "../shader/turned.ts";
+import { FrameTimes } from "./frameTimes.ts";
 import { Gizmo } from "./gizmo.ts";
 import { colourOf, type Marker, Markers } from "./markers.ts";
 import { type Hit, Picking } from "./picking.ts";
@@ -39,21 +40,20 @@ export class Viewport {
   readonly #markers = new Markers();
   readonly #gizmo: Gizmo;
   readonly #pointer: Pointer;
+  readonly #times = new FrameTimes();
   readonly #sides: Partial<Record<Slot, { view: ShapeView; bound: Bound | undefined; frame?: Frame }>> = {};
   #picking: Picking | undefined;
   #box: Box = { centre: [0, 0, 0], half: 1 };
   #dim: 1 | 2 | 3 = 3;
   #view: View;
   #stale = true;
-  /** Milliseconds of handlers since the last frame. */
-  #handling = 0;
 
   constructor(host: HTMLElement, history: History, view: View) {
     this.#history = history;
     this.#view = view;
     this.stage = new Stage(host);
     const gl = this.stage.renderer.getContext() as WebGL2RenderingContext;
-    this.#kernel = new Kernel(gl, () => this.stage.renderer.resetState());
+    this.#kernel = new Kernel(gl, this.stage.renderer.state as GlState);
     this.stage.scene.add(this.#markers.object);
     this.#gizmo = new Gizmo(this.stage, this.stage.scene, {
       begin: () => history.begin("Move"),
@@ -62,6 +62,7 @@ export class Viewport {
     });
     this.#pointer = new Pointer(this.stage, this.#gizmo, {
       markers: () => history.session.points.map((point) => this.#toView(point[this.#view.moves])),
+      boxes: () => this.#view.boxes,
       isSelected: (marker) => history.session.selection.includes(history.session.points[marker].id),
       meet: (ray, at, through) => this.#meet(ray, at, through),
       click: (hit) => this.#click(hit),
@@ -77,7 +78,7 @@ export class Viewport {
     });
     this.stage.startOrbit();
     this.stage.onFrame = () => this.#frame();
-    this.stage.onDrawn = (start) => this.#measure(start);
+    this.stage.onDrawn = (start) => this.#times.tell(start, history.inGesture);
     history.subscribe(() => this.invalidate());
   }
 
@@ -148,8 +149,10 @@ export class Viewport {
     const places = new Float32Array(3 * points.length);
     const turned = new Float32Array(3 * points.length);
     points.forEach((point, i) => {
-      const map = new Matrix3().fromArray(maps, 9 * point).invert(); // read by columns: the inverse transpose, row by row
-      const normal = new Vector3().fromArray(normals, 3 * i).applyMatrix3(map).normalize();
+      const map = new Matrix3().fromArray(maps, 9 * point);
+      const side = Math.sign(map.determinant()); // of the winding, even under a reflection
+      map.invert(); // read by columns: the inverse transpose, row by row
+      const normal = new Vector3().fromArray(normals, 3 * i).applyMatrix3(map).normalize().multiplyScalar(side);
       normal.toArray(turned, 3 * i);
       for (let c = 0; c < 3; c++) places[3 * i + c] = (y[3 * point + c] - this.#box.centre[c]) / this.#box.half;
     });
@@ -160,6 +163,7 @@ export class Viewport {
   setView(view: View): void {
     const split = view.comparison;
     this.#view = view;
+    this.stage.turns = !view.boxes;
     if (split !== this.stage.split) {
       this.stage.showRight = split ? (right) => this.#showSide(right) : undefined;
       if (!split) this.#showSide(false);
@@ -250,13 +254,11 @@ export class Viewport {
   }
 
   #drag(to: (place: Vec3) => Vec3, turn?: Quaternion): void {
-    const start = performance.now();
     this.#history.preview((session) => {
       // One that is turned stays in its place, to the last bit.
       const moved = turn && session.selection.length === 1 ? session : moveSelected(session, this.#view.moves, to);
       return turn && this.#view.moves === "target" ? turnSelected(moved, [turn.x, turn.y, turn.z, turn.w]) : moved;
     });
-    this.#handling += performance.now() - start;
   }
 
   #frame(gizmo = true): void {
@@ -279,14 +281,6 @@ export class Viewport {
     const { tool, moves } = this.#view;
     const can = selection.length > 1 || (tool === "rotate" && moves === "target");
     return can && (tool !== "rotate" || this.#dim > 1) ? tool : "translate";
-  }
-
-  /** Tells the Performance API how long JavaScript took for a frame of a drag: the pointer's handlers and the drawing. */
-  #measure(start: number): void {
-    if (this.#history.inGesture) {
-      performance.measure("neuralmls-drag-frame", { start, duration: this.#handling + performance.now() - start });
-    }
-    this.#handling = 0;
   }
 
   /** Weights that are still being fitted: what was bound last moves as far as its control points are still there. */
@@ -365,7 +359,7 @@ export class Viewport {
   #add(side: Slot, drawn: Drawn): ShapeView {
     const view = new ShapeView(this.#kernel, drawn);
     this.#sides[side] = { view, bound: undefined };
-    this.stage.scene.add(view.object);
+    (drawn.index ? this.stage.scene : this.stage.clouds.scene).add(view.object);
     view.object.visible = side === "main";
     return view;
   }
@@ -373,13 +367,15 @@ export class Viewport {
   #remove(side: Slot): void {
     const shown = this.#sides[side];
     if (!shown) return;
-    this.stage.scene.remove(shown.view.object);
+    shown.view.object.removeFromParent();
     shown.view.dispose();
     delete this.#sides[side];
   }
 
   #showSide(right: boolean): void {
     const { main, comparison } = this.#sides;
+    // What one drags by is on the side that takes the pointer.
+    this.#gizmo.visible = !right;
     if (main) main.view.object.visible = !right || !comparison;
     if (comparison) comparison.view.object.visible = right;
   }

@@ -12,6 +12,8 @@ export interface Compared {
   /** The largest distance of the two, and the largest from the shape at rest, as fractions of the box. */
   worst: number;
   moved: number;
+  /** The largest angle between the shader's normals and those that the core's maps give, in degrees. */
+  leaning: number;
 }
 
 declare global {

@@ -12,11 +12,12 @@ for (const name of ["chair", "airplane", "car", "table", "ShapeNetChair1"]) {
     const given = name === "ShapeNetChair1" ? published() : sample(name);
     test.skip(!given, "there is no folder of real files: set NEURALMLS_DATA");
     for (const weights of [neural, classic]) {
-      for (const { transform, temperature, worst, moved } of await compare(page, given!, weights)) {
+      for (const { transform, temperature, worst, moved, leaning } of await compare(page, given!, weights)) {
         const what = `${weights.kind}, ${transform}, T = ${temperature}`;
         test.info().annotations.push({ type: "error", description: `${what}: ${worst.toExponential(1)}` });
         expect(moved, what).toBeGreaterThan(0.01);
         expect(worst, what).toBeLessThan(1e-4);
+        expect(leaning, what).toBeLessThan(0.01);
       }
     }
   });
@@ -39,3 +40,11 @@ for (const name of ["chair", "airplane"]) {
     }
   });
 }
+
+test("normals stay on the side of the winding under a reflection", async ({ page }) => {
+  const table = sample("table");
+  const compared = await compare(page, { ...table, q: table.p.map(([x, y, z]) => [-x, y, z]) }, classic);
+  const affine = compared.filter(({ transform }) => transform === "affine");
+  expect(affine).toHaveLength(3);
+  for (const { leaning } of affine) expect(leaning).toBeLessThan(0.01);
+});
