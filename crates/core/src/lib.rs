@@ -36,7 +36,7 @@ pub mod tree;
 
 pub use deformer::{Deformed, Deformer};
 pub use error::Error;
-pub use exact::{Aim, ExactHandles};
+pub use exact::{Aim, ExactHandles, Remedy, Soft};
 pub use frame::Frame;
 pub use logits::inverse_distance::InverseDistance;
 pub use logits::neural::{Fit, Layer, Network, Samples, Schedule, Training};
