@@ -147,15 +147,11 @@ def _misses(probe: Probe, names: tuple[str, ...], setting: _Setting) -> Advice |
 
 def _what_arrives(probe: Probe, setting: _Setting) -> str:
     """What takes the control points to their targets."""
-    t = setting.temperature
-    tried: list[tuple[str, Transform, float]] = [
-        ("", probe.transform, t),
-        (f" at temperature {t / 2:g}", probe.transform, t / 2),
-        (" with the affine transform", "affine", t),
-    ]
-    for how, transform, temperature in tried:
-        if probe.missed(transform, temperature, 1.0).max() <= ARRIVED * probe.side:
-            return f"exact handles arrive{how}"
+    if probe.exact.aim_carefully(probe.q, setting.temperature).soft is None:
+        return "exact handles arrive"
+    remedy = probe.exact.remedy(probe.q, setting.temperature)
+    if remedy is not None:
+        return f"exact handles arrive {remedy}"
     return "even exact handles, a lower temperature or the affine transform do not take them there: move them less"
 
 

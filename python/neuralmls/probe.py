@@ -91,14 +91,14 @@ class Probe:
         self.side = 2 * box_around(points)[1]
         self.places = _places(points, faces)
         self._weights = weights
-        self._exact = ExactHandles(weights, transform=transform)
+        self.exact = ExactHandles(weights, transform=transform)
         self._deformer = Deformer(self.places, weights, transform=transform)
         self._step = STEP * self.side
         self._beside = [Deformer(place, weights, transform=transform) for place in beside(self.places, self._step)]
 
     def motion(self, temperature: float, adherence: float) -> Motion:
         """What the deformation does at the places."""
-        aimed = self._exact.aim(self.q, temperature, adherence).targets
+        aimed = self.exact.aim(self.q, temperature, adherence).targets
         values = [np.asarray(deformer.deform(aimed, temperature), np.float64) for deformer in self._beside]
         return Motion(np.asarray(self._deformer.deform(aimed, temperature), np.float64), jacobians(values, self._step))
 

@@ -1,5 +1,6 @@
 //! Handles that arrive.
 
+use neuralmls_core::{Error, Remedy, Soft};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -10,8 +11,9 @@ use crate::errors::from_core;
 #[pyclass(frozen)]
 pub(crate) struct ExactHandles(neuralmls_core::ExactHandles);
 
-/// Effective targets m x d, and how far each control point stays from where it was to go.
-type Aim<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
+/// Effective targets m x d, how far each control point stays from where it was to go, and why they were left soft: a reason, which
+/// control point, how much.
+type Aim<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, Option<(&'static str, usize, f64)>);
 
 #[pymethods]
 impl ExactHandles {
@@ -34,9 +36,48 @@ impl ExactHandles {
         temperature: f64,
         adherence: f64,
     ) -> PyResult<Aim<'py>> {
-        let (shape, q) = ([q.shape()[0], q.shape()[1]], q.as_slice()?);
-        let aim =
-            py.detach(|| self.0.aim(q, temperature, adherence)).map_err(|error| from_core(error, None))?;
-        Ok((PyArray1::from_vec(py, aim.targets).reshape(shape)?, PyArray1::from_vec(py, aim.misses)))
+        given(py, q, |q| self.0.aim(q, temperature, adherence))
     }
+
+    fn aim_carefully<'py>(
+        &self,
+        py: Python<'py>,
+        q: PyReadonlyArray2<'py, f64>,
+        temperature: f64,
+        adherence: f64,
+    ) -> PyResult<Aim<'py>> {
+        given(py, q, |q| self.0.aim_carefully(q, temperature, adherence))
+    }
+
+    /// A temperature, or none for the affine transform; none at all where neither helps.
+    fn remedy(
+        &self,
+        py: Python<'_>,
+        q: PyReadonlyArray2<'_, f64>,
+        temperature: f64,
+        adherence: f64,
+    ) -> PyResult<Option<(&'static str, Option<f64>)>> {
+        let q = q.as_slice()?;
+        let remedy =
+            py.detach(|| self.0.remedy(q, temperature, adherence)).map_err(|error| from_core(error, None))?;
+        Ok(remedy.map(|remedy| match remedy {
+            Remedy::Temperature(other) => ("temperature", Some(other)),
+            Remedy::Affine => ("affine", None),
+        }))
+    }
+}
+
+/// An aim of the core as Python takes it, computed without the GIL.
+fn given<'py>(
+    py: Python<'py>,
+    q: PyReadonlyArray2<'py, f64>,
+    aimed: impl FnOnce(&[f64]) -> Result<neuralmls_core::Aim, Error> + Send,
+) -> PyResult<Aim<'py>> {
+    let (shape, q) = ([q.shape()[0], q.shape()[1]], q.as_slice()?);
+    let aim = py.detach(|| aimed(q)).map_err(|error| from_core(error, None))?;
+    let soft = aim.soft.map(|soft| match soft {
+        Soft::Shared(control_point, owned) => ("shared", control_point, owned),
+        Soft::Unreached(control_point, miss) => ("unreached", control_point, miss),
+    });
+    Ok((PyArray1::from_vec(py, aim.targets).reshape(shape)?, PyArray1::from_vec(py, aim.misses), soft))
 }

@@ -5,6 +5,7 @@ use neuralmls_core::progress::Progress;
 use neuralmls_core::{Deformer, Error, InverseDistance, PointTree, Transform};
 use wasm_bindgen::prelude::*;
 
+use crate::handles::{named, Handles};
 use crate::refused;
 
 enum Function {
@@ -70,7 +71,7 @@ impl Weights {
 #[wasm_bindgen]
 pub struct Fit {
     points: Deformer,
-    control_points: Deformer,
+    control_points: Handles,
 }
 
 #[wasm_bindgen]
@@ -85,14 +86,18 @@ impl Fit {
         Float32Array::from(self.control_points.logits())
     }
 
-    /// Where the control points land when they are pulled to `q` (m x dim).
+    /// [`Handles::land`] of the control points.
     ///
     /// # Errors
-    /// Where `q` does not fit, or the temperature is not above 0.
-    pub fn land(&mut self, q: &[f64], transform: &str, temperature: f64) -> Result<Float64Array, JsError> {
-        self.control_points.set_transform(named(transform)?);
-        let landed = self.control_points.deform(q, temperature, false, &mut |_| true).map_err(refused)?;
-        Ok(Float64Array::from(&landed.positions[..]))
+    /// Where `q` does not fit, or a number is out of its range.
+    pub fn land(
+        &mut self,
+        q: &[f64],
+        transform: &str,
+        temperature: f64,
+        adherence: f64,
+    ) -> Result<Array, JsError> {
+        self.control_points.land(q, transform, temperature, adherence)
     }
 
     /// The points' new positions (n x dim), then their maps (n x dim x dim) if `maps`.
@@ -104,12 +109,16 @@ impl Fit {
         q: &[f64],
         transform: &str,
         temperature: f64,
+        adherence: f64,
         maps: bool,
         tell: &js_sys::Function,
     ) -> Result<Array, JsError> {
+        let aim = self.control_points.aimed(q, transform, temperature, adherence)?;
         self.points.set_transform(named(transform)?);
-        let deformed =
-            self.points.deform(q, temperature, maps, &mut crate::reporter(tell)).map_err(refused)?;
+        let deformed = self
+            .points
+            .deform(&aim.targets, temperature, maps, &mut crate::reporter(tell))
+            .map_err(refused)?;
         let result = Array::of1(&Float64Array::from(&deformed.positions[..]));
         if let Some(maps) = deformed.maps {
             result.push(&Float64Array::from(&maps[..]));
@@ -128,19 +137,8 @@ impl Fit {
     ) -> Result<Fit, Error> {
         let p = &weights.p;
         let own = weights.logits(p, None, &mut |_| true)?;
+        let control_points = Handles::of(p, dim, own)?;
         let logits = weights.logits(x, tree, progress)?;
-        Ok(Fit {
-            points: Deformer::new(x.to_vec(), dim, p, logits, Transform::Rigid)?,
-            control_points: Deformer::new(p.clone(), dim, p, own, Transform::Rigid)?,
-        })
-    }
-}
-
-fn named(transform: &str) -> Result<Transform, JsError> {
-    match transform {
-        "rigid" => Ok(Transform::Rigid),
-        "similarity" => Ok(Transform::Similarity),
-        "affine" => Ok(Transform::Affine),
-        other => Err(refused(format!("transform: expected rigid, similarity or affine, found {other}"))),
+        Ok(Fit { points: Deformer::new(x.to_vec(), dim, p, logits, Transform::Rigid)?, control_points })
     }
 }

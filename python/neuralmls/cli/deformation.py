@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from neuralmls.advice import Advice, advise
+from neuralmls.cli.session import Settings
 from neuralmls.cli.stages import Stages
 from neuralmls.cli.weights import WeightsChoice
 from neuralmls.control_points import ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ControlPointError, FileError
-from neuralmls.exact import ExactHandles
-from neuralmls.protocol import Transform
+from neuralmls.exact import Aim, ExactHandles
 from neuralmls.shape import Shape
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, softmax
 
@@ -28,12 +28,17 @@ ARRIVED = 1e-6
 
 @dataclass(frozen=True)
 class Deformation:
-    """A shape's new positions, and how far each control point ended from its target."""
+    """A shape's new positions, and how far each control point ended from its target.
+
+    `adherence` is what was used, `kept_soft` why that is 0 where more was asked for.
+    """
 
     positions: Floats
     maps: NDArray[np.float64] | None
     weights: NeuralWeights | ShapeAwareWeights | InverseDistanceWeights
     missed: NDArray[np.float64]
+    adherence: float
+    kept_soft: str | None
 
 
 def check_size(shape: Shape) -> None:
@@ -78,23 +83,17 @@ def longest_side(shape: Shape) -> float:
     return float((high - low).max())
 
 
-def deformed(
-    shape: Shape,
-    points: ControlPoints,
-    choice: WeightsChoice,
-    transform: Transform,
-    temperature: float,
-    stages: Stages,
-    *,
-    exact: bool = False,
-) -> Deformation:
+def deformed(shape: Shape, points: ControlPoints, settings: Settings, stages: Stages) -> Deformation:
     """Fit the weights, bind the shape to them, and move the control points near their targets, or onto them."""
-    with stages.stage(choice.stage) as report:
-        weights = choice.make(points.sources, shape, report)
+    transform, temperature = settings.transform, settings.temperature
+    with stages.stage(settings.choice.stage) as report:
+        weights = settings.choice.make(points.sources, shape, report)
     with stages.stage("bind") as report:
         deformer = Deformer(shape.positions, weights, transform=transform, progress=report)
     with stages.stage("move") as report:
-        aim = ExactHandles(weights, transform=transform).aim(points.targets, temperature, float(exact))
+        exact = ExactHandles(weights, transform=transform)
+        aim_at = exact.aim_carefully if settings.careful else exact.aim
+        aim = aim_at(points.targets, temperature, settings.adherence)
         maps: NDArray[np.float64] | None = None
         if shape.has_normals:
             y, maps = deformer.deform(aim.targets, temperature, return_maps=True, progress=report)
@@ -102,7 +101,26 @@ def deformed(
             y = deformer.deform(aim.targets, temperature, progress=report)
         handles = Deformer(points.sources, weights, transform=transform)
         missed = np.linalg.norm(handles.deform(aim.targets, temperature) - points.targets, axis=1)
-    return Deformation(y, maps, weights, missed)
+    adherence = settings.adherence if aim.soft is None else 0.0
+    return Deformation(y, maps, weights, missed, adherence, _why_soft(aim, exact, points, settings))
+
+
+def _why_soft(aim: Aim, exact: ExactHandles, points: ControlPoints, settings: Settings) -> str | None:
+    """Why control points were not taken to their targets, and what would take them there, if that is so."""
+    if aim.soft is None:
+        return None
+    name, amount = points.names[aim.soft.control_point], aim.soft.amount
+    said = (
+        f"'{name}' has only {amount:.2g} of the weight at its own place"
+        if aim.soft.reason == "shared"
+        else f"'{name}' would stay {amount:.3g} off all the same"
+    )
+    remedy = exact.remedy(points.targets, settings.temperature, settings.adherence)
+    if remedy is not None:
+        said += f"; {remedy} they arrive"
+    if aim.soft.reason == "shared" and settings.choice.steps is not None:
+        said += "; without --steps it is trained until they own their places"
+    return said
 
 
 def not_parted(points: ControlPoints, choice: WeightsChoice, result: Deformation) -> list[str]:
@@ -133,23 +151,15 @@ def not_arrived(points: ControlPoints, shape: Shape, result: Deformation) -> lis
     ]
 
 
-def advice(
-    shape: Shape,
-    points: ControlPoints,
-    result: Deformation,
-    transform: Transform,
-    temperature: float,
-    *,
-    exact: bool,
-) -> list[Advice]:
+def advice(shape: Shape, points: ControlPoints, result: Deformation, settings: Settings) -> list[Advice]:
     """Return what is likely bad about the result, and what would help."""
     return advise(
         shape.positions,
         shape.faces,
         result.weights,
         points.targets,
-        transform=transform,
-        temperature=temperature,
-        adherence=float(exact),
+        transform=settings.transform,
+        temperature=settings.temperature,
+        adherence=result.adherence,
         names=points.names,
     )

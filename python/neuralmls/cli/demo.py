@@ -33,6 +33,7 @@ def demo(*, output: Path, force: bool) -> None:
     points = sample_files(chair)[2]
 
     from neuralmls.cli.deformation import deformed as deform
+    from neuralmls.cli.session import Settings
     from neuralmls.control_points import ControlPoints
     from neuralmls.shape import read
 
@@ -41,7 +42,7 @@ def demo(*, output: Path, force: bool) -> None:
     said = [(str(chair), "the chair as it is"), (str(points), f"its {len(control_points)} control points and targets")]
     for name, kind in RESULTS.items():
         stages = Stages()
-        result = deform(source, control_points, WeightsChoice(kind), "rigid", 1.0, stages)
+        result = deform(source, control_points, Settings(WeightsChoice(kind), 1.0, "rigid"), stages)
         source.write(deformed[name], result.positions, maps=result.maps)
         said.append((str(deformed[name]), f"bent with {name} weights, {sum(stages.seconds.values()):.2f} s"))
     missing = None
