@@ -1,5 +1,6 @@
 /** All that the panels show. */
 
+import type { Soft } from "../model/handles.ts";
 import type { PointId, Session } from "../model/session.ts";
 import { EMPTY_SESSION } from "../model/session.ts";
 import { DEFAULT_VIEW, type View } from "../model/view.ts";
@@ -59,6 +60,8 @@ export interface State {
   comparisonFit: FitState;
   /** How far each control point ends from its target, in file units. */
   distances: ReadonlyMap<PointId, number>;
+  /** Why control points are left soft though more adherence is set, and which one is to blame. */
+  soft: (Soft & { id: PointId }) | null;
   /** The GPU cannot hold the weights: the core computes the frames. */
   slowFrames: boolean;
   busy: Busy | null;
@@ -80,6 +83,7 @@ export const INITIAL_STATE: State = {
   fit: { status: "none" },
   comparisonFit: { status: "none" },
   distances: new Map(),
+  soft: null,
   slowFrames: false,
   busy: null,
   toasts: [],

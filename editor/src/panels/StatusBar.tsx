@@ -1,6 +1,6 @@
 import type { FitState } from "../app/state.ts";
 import { isMoved } from "../model/session.ts";
-import { distance } from "./controls.tsx";
+import { arrived, distance } from "./controls.tsx";
 import { useAppState } from "./useStore.ts";
 
 /** How things stand, quietly. */
@@ -9,6 +9,8 @@ export function StatusBar() {
   if (!shape) return null;
   const moved = session.points.filter(isMoved);
   const away = moved.map((point) => distances.get(point.id)).filter((d) => d !== undefined);
+  const size = 2 * shape.opened.frame.half;
+  const farthest = Math.max(0, ...away);
   return (
     <footer class="status-bar">
       <span class={`fit ${fit.status}`} role="status">
@@ -17,7 +19,7 @@ export function StatusBar() {
       </span>
       {away.length > 0 && (
         <span title="The largest distance of a control point from its target">
-          off target by at most {distance(Math.max(...away), 2 * shape.opened.frame.half)} ({percent(Math.max(...away) / (2 * shape.opened.frame.half))})
+          {arrived(farthest, size) ? "on target" : `off target by at most ${distance(farthest, size)} (${percent(farthest / size)})`}
         </span>
       )}
       {slowFrames && <span>too many weights for the graphics card: frames are computed by the core</span>}

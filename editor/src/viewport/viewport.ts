@@ -3,6 +3,7 @@
 import { Box3, Matrix3, type Ray, Sphere, Vector2, Vector3 } from "three";
 import type { SerializedBVH } from "three-mesh-bvh";
 import { addPoint, type Box, type History, moveSelected, select } from "../commands/index.ts";
+import type { Handles } from "../model/handles.ts";
 import { twinOf } from "../model/mirror.ts";
 import { leader, type PointId, selected, type Session } from "../model/session.ts";
 import type { Slot } from "../model/slot.ts";
@@ -23,6 +24,9 @@ export interface Bound {
   p: Float64Array;
   /** n x m */
   logits: Float32Array;
+  /** m x m */
+  ownLogits: Float32Array;
+  handles: Handles;
 }
 
 /** Vertices as the core has computed them. */
@@ -278,12 +282,11 @@ export class Viewport {
   }
 
   /** Weights that are still being fitted: what was bound last moves as far as its control points are still there. */
-  #motion({ ids, p }: Bound, session: Session): GpuMotion {
+  #motion({ ids, p, handles }: Bound, session: Session): GpuMotion {
     const { transform, temperature } = session.settings;
     const { centre, half } = this.#box;
     const enter = (coordinate: number, at: number): number => (coordinate - centre[at % 3]) / half;
-    const places = p.map(enter);
-    const targets = places.slice();
+    const targets = p.slice();
     if (!this.#atRest) {
       const byId = new Map(session.points.map((point) => [point.id, point]));
       ids.forEach((id, i) => {
@@ -292,8 +295,7 @@ export class Viewport {
         for (let c = 0; c < 3; c++) {
           // Bit for bit where it is not moved.
           const moved = point.target[c] !== point.position[c];
-          const by = point.target[c] - point.position[c];
-          if (moved) targets[3 * i + c] = enter(p[3 * i + c] + by, c);
+          if (moved) targets[3 * i + c] += point.target[c] - point.position[c];
         }
       });
     }
@@ -304,7 +306,7 @@ export class Viewport {
         : at >= 0
           ? ({ by: "weight", of: at } as const)
           : ({ by: "nothing" } as const);
-    return { p: places, q: targets, transform, temperature, tint };
+    return { p: p.map(enter), q: handles.aim(targets, session.settings).map(enter), transform, temperature, tint };
   }
 
   #markersOf(session: Session): Marker[] {

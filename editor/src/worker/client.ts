@@ -5,6 +5,7 @@
 
 import coreUrl from "../wasm/neuralmls_wasm_bg.wasm?url";
 import { widen, widenMaps } from "./coordinates.ts";
+import { createHandles } from "./handles.ts";
 import type { Moved } from "./messages.ts";
 import { type CallOptions, type Core, CoreError, type Files, type Fitted, type Motion, type Slot } from "./protocol.ts";
 import { Remote } from "./remote.ts";
@@ -14,10 +15,20 @@ export function createCore(): Core {
   return new Client(compiled());
 }
 
+/** The core as it came, for pages that are dragged offline. */
+export async function coreBytes(): Promise<ArrayBuffer> {
+  return (await fetched()).arrayBuffer();
+}
+
+async function fetched(): Promise<Response> {
+  const response = await fetch(coreUrl);
+  if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+  return response;
+}
+
 async function compiled(): Promise<WebAssembly.Module> {
   try {
-    const response = await fetch(coreUrl);
-    if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+    const response = await fetched();
     // Not every static host sends the type that compiling while loading demands.
     const streams = response.headers.get("content-type") === "application/wasm";
     return await (streams ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer()));
@@ -84,16 +95,20 @@ class Client implements Core {
   }
 
   async deform(motion: Motion, options: CallOptions & { slot?: Slot } = {}) {
-    const [{ positions, maps }, controlPoints] = await Promise.all([
+    const [{ positions, maps }, landed] = await Promise.all([
       this.#moved(motion, true, options),
       this.land(motion, options),
     ]);
     const { dim } = this.#present();
-    return { positions: widen(positions, dim), maps: widenMaps(maps!, dim), controlPoints };
+    return { positions: widen(positions, dim), maps: widenMaps(maps!, dim), landed };
   }
 
   async land(motion: Motion, options: CallOptions & { slot?: Slot } = {}) {
     return (await this.#fitted(options.slot)).call("land", { motion }, options);
+  }
+
+  async handles(controlPoints: Float64Array, ownLogits: Float32Array) {
+    return createHandles(await this.#core, controlPoints, this.#present().dim, ownLogits);
   }
 
   async save(name: string, motion: Motion | null, options: CallOptions = {}) {

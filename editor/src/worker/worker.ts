@@ -3,7 +3,7 @@
 import initialise, { type Fit, Points, ShapeFile } from "../wasm/neuralmls_wasm.js";
 import { measure, narrow, relative, widen } from "./coordinates.ts";
 import type { Answer, Ask, Give, Moved, Operation, Question } from "./messages.ts";
-import { CoreError, type Fitted, type Motion, type Opened, type Saved, type Stage } from "./protocol.ts";
+import { CoreError, type Fitted, type Motion, type Opened, type Saved, type Soft, type Stage } from "./protocol.ts";
 
 /** A control point with less of the weight at its own place shares it; the training aims at 0.9. */
 const OWNED = 0.85;
@@ -67,15 +67,16 @@ const operations: { [O in Operation]: (ask: Ask<O>, tell: Tell) => Give<O> } = {
   },
 
   deform({ motion, maps }, tell) {
-    const { targets, transform, temperature } = inDimension(motion);
-    const [positions, turned] = present(fitted).deform(targets, transform, temperature, maps, tell("deform"));
+    const { targets, transform, temperature, adherence } = inDimension(motion);
+    const [positions, turned] = present(fitted).deform(targets, transform, temperature, adherence, maps, tell("deform"));
     return { positions, maps: turned ?? null } as Moved;
   },
 
   land({ motion }) {
-    const { targets, transform, temperature } = inDimension(motion);
-    const landed = present(fitted).land(targets, transform, temperature) as Float64Array<ArrayBuffer>;
-    return widen(landed, present(points).dim);
+    const { targets, transform, temperature, adherence } = inDimension(motion);
+    const [places, reason, index, amount, remedy] = present(fitted).land(targets, transform, temperature, adherence);
+    const soft: Soft | null = reason === undefined ? null : { reason, index, amount, remedy };
+    return { places: widen(places, present(points).dim), soft };
   },
 
   write({ name, moved }, tell) {
