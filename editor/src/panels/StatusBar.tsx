@@ -5,7 +5,7 @@ import { useAppState } from "./useStore.ts";
 
 /** How things stand, quietly. */
 export function StatusBar() {
-  const { fit, comparisonFit, session, shape, distances, view, autosaved, slowFrames } = useAppState();
+  const { fit, comparisonFit, session, shape, distances, soft, view, autosaved, slowFrames } = useAppState();
   if (!shape) return null;
   const moved = session.points.filter(isMoved);
   const away = moved.map((point) => distances.get(point.id)).filter((d) => d !== undefined);
@@ -20,6 +20,7 @@ export function StatusBar() {
       {away.length > 0 && (
         <span title="The largest distance of a control point from its target">
           {arrived(farthest, size) ? "on target" : `off target by at most ${distance(farthest, size)} (${percent(farthest / size)})`}
+          {soft ? ", left soft" : ""}
         </span>
       )}
       {slowFrames && <span>too many weights for the graphics card: frames are computed by the core</span>}
