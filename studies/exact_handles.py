@@ -1,9 +1,9 @@
 """What exact handles change: `python -m studies.exact_handles FOLDER [--figures FOLDER]`, two minutes.
 
 FOLDER has the paper's chairs and airplanes in `shapenet/` (they are not ours to give). Every case is deformed twice
-with the same weights, soft and exact, also with control points that own less and less of their places, by which the
-limit of `ExactHandles.aim_carefully` was chosen (crates/core/src/exact.rs). Prints the tables of docs/beyond-the-paper.md; its pictures are of our own
-sample shapes.
+with the same weights, soft and exact, also where control points own less and less of their places: by that the limit of
+`ExactHandles.aim_carefully` was chosen (crates/core/src/exact.rs). Prints the tables of docs/beyond-the-paper.md; its
+pictures are of our own sample shapes.
 """
 
 from __future__ import annotations
@@ -127,7 +127,8 @@ def owning(everything: list[Case]) -> str:
             own = float(np.diagonal(nm.softmax(weights.logits(case.p), temperature)).min())
             found.append((own, *(result(case, weights, adherence, temperature) for adherence in (0.0, 1.0))))
     lines = [
-        "| least own weight | cases | do not arrive | fold | curvature, mean | curvature, median |\n|---|---|---|---|---|---|"
+        "| least own weight | cases | do not arrive | fold | curvature, mean | curvature, median |",
+        "|---|---|---|---|---|---|",
     ]
     for low, high in pairwise(BANDS):
         band = [each for each in found if low <= each[0] < high]

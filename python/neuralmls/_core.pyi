@@ -107,3 +107,24 @@ class ExactHandles:
     def remedy(
         self, q: NDArray[np.float64], temperature: float, adherence: float
     ) -> tuple[str, float | None] | None: ...
+
+class Probe:
+    def __new__(
+        cls,
+        p: NDArray[np.float64],
+        places: NDArray[np.float64],
+        side: float,
+        logits: NDArray[np.float32],
+        own_logits: NDArray[np.float32],
+        transform: str,
+    ) -> Probe: ...
+    @staticmethod
+    def points(places: NDArray[np.float64], side: float) -> NDArray[np.float64]: ...
+    def advise(
+        self, q: NDArray[np.float64], temperature: float, adherence: float
+    ) -> list[tuple[str, float, int, list[int], tuple[float | None, float] | None]]: ...
+    def parts(self, q: NDArray[np.float64], temperature: float, adherence: float) -> tuple[float, float]: ...
+    def look(
+        self, q: NDArray[np.float64], temperature: float, adherence: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+    def far(self) -> NDArray[np.float64]: ...

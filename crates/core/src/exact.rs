@@ -202,8 +202,8 @@ fn distances(a: &[f64], b: &[f64], dim: usize) -> Vec<f64> {
     a.chunks_exact(dim).zip(b.chunks_exact(dim)).map(|pair| square(pair).sqrt()).collect()
 }
 
-/// The greatest value, and where it is.
-fn greatest(values: impl Iterator<Item = f64>) -> (usize, f64) {
+/// The greatest value, the first of equals, and where it is.
+pub(crate) fn greatest(values: impl Iterator<Item = f64>) -> (usize, f64) {
     values.enumerate().fold((0, f64::NEG_INFINITY), |most, (i, v)| if v > most.1 { (i, v) } else { most })
 }
 

@@ -19,6 +19,7 @@
 //!
 //! Points are flat slices of `f64`, `dim` coordinates each (1, 2 or 3), in one coordinate system throughout.
 
+pub mod advice;
 pub mod deformer;
 mod error;
 pub mod exact;

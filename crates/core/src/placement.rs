@@ -36,18 +36,11 @@ pub fn farthest_points(
     if !(1..=MOST).contains(&count) {
         return Err(Error::argument("count", format!("expected 1 to {MOST}, found {count}")));
     }
-    if let Some(face) = faces.iter().find(|face| face.iter().any(|&corner| corner as usize >= n)) {
-        let message = format!("expected faces to name vertices 0 to {}, found {face:?}", n - 1);
-        return Err(Error::argument("faces", message));
-    }
+    check_faces(faces, n)?;
     let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
     let size = LEAST.max(EACH * count);
-    // Relative to the box, so that samples keep their digits far from the origin and squares neither over- nor underflow.
     let frame = Frame::around(x, dim);
-    let enter = |x: &[f64]| -> [f64; 3] {
-        std::array::from_fn(|k| x.get(k).map_or(0.0, |x| (x - frame.centre[k]) / frame.half))
-    };
-    let points: Vec<[f64; 3]> = x.chunks_exact(dim).map(enter).collect();
+    let points = entered(x, dim, frame);
     let surface = Surface::new(&points, faces);
     let vertices: Vec<u32> = match &surface {
         Some(surface) => surface.vertices(n),
@@ -81,6 +74,44 @@ pub fn farthest_points(
         }
     }
     Ok(result)
+}
+
+/// `count` places on the surface of `faces`, each as likely as another: count x dim. Without faces that have area, so many of the points, or
+/// all of them.
+///
+/// # Errors
+/// Where a size does not fit, or a face names no point.
+pub fn sample(x: &[f64], dim: usize, faces: &[[u32; 3]], count: usize, seed: u64) -> Result<Vec<f64>, Error> {
+    let n = check_points("positions", x, dim)?;
+    check_faces(faces, n)?;
+    let mut random = Random(ChaCha8Rng::seed_from_u64(seed));
+    let frame = Frame::around(x, dim);
+    let points = entered(x, dim, frame);
+    if let Some(surface) = Surface::new(&points, faces) {
+        let places = (0..count).map(|_| surface.sample(&mut random));
+        return Ok(places
+            .flat_map(|place| (0..dim).map(move |k| frame.centre[k] + frame.half * place[k]))
+            .collect());
+    }
+    let mut few: Vec<u32> = (0..n as u32).collect();
+    random.choose(&mut few, count);
+    Ok(few.iter().flat_map(|&index| x[dim * index as usize..][..dim].iter().copied()).collect())
+}
+
+fn check_faces(faces: &[[u32; 3]], n: usize) -> Result<(), Error> {
+    let strange = faces.iter().find(|face| face.iter().any(|&corner| corner as usize >= n));
+    strange.map_or(Ok(()), |face| {
+        let message = format!("expected faces to name vertices 0 to {}, found {face:?}", n - 1);
+        Err(Error::argument("faces", message))
+    })
+}
+
+/// The points relative to the box, so that samples keep their digits far from the origin and squares neither over- nor underflow.
+fn entered(x: &[f64], dim: usize, frame: Frame) -> Vec<[f64; 3]> {
+    let enter = |x: &[f64]| -> [f64; 3] {
+        std::array::from_fn(|k| x.get(k).map_or(0.0, |x| (x - frame.centre[k]) / frame.half))
+    };
+    x.chunks_exact(dim).map(enter).collect()
 }
 
 /// A place where a control point may be put, relative to the box; the vertex that it is, if any.
@@ -219,6 +250,24 @@ mod tests {
         let candidates: Vec<_> =
             (0..300).map(|_| Candidate { place: place(&mut random), vertex: None }).collect();
         assert_eq!(spread(&candidates, 20), naive(&candidates, 20));
+    }
+
+    #[test]
+    fn samples_lie_on_the_surface_by_area_or_are_points_of_the_cloud() {
+        // The second face has three times the area of the first.
+        let x = [0.0, 0.0, 1e6, 1.0, 0.0, 1e6, 0.0, 1.0, 1e6, 3.0, 0.0, 1e6, 0.0, 1.0, 1e6];
+        let places = sample(&x, 3, &[[0, 1, 2], [0, 3, 4]], 4000, 0).unwrap();
+        assert_eq!(places.len(), 12_000);
+        assert!(places
+            .chunks_exact(3)
+            .all(|p| p[2] == 1e6 && p[0] >= -1e-9 && p[1] >= -1e-9 && p[0] / 3.0 + p[1] <= 1.0 + 1e-9));
+        let small = places.chunks_exact(3).filter(|p| p[0] + p[1] <= 1.0).count() as f64 / 4000.0;
+        assert!((small - 0.5).abs() < 0.03, "{small}"); // a quarter on the first, and a third of the others on its place
+        assert_eq!(sample(&x, 3, &[], 10, 0).unwrap(), x);
+        let few = sample(&x, 3, &[], 2, 0).unwrap();
+        assert_eq!(few.len(), 6);
+        assert!(few.chunks_exact(3).all(|place| x.chunks_exact(3).any(|vertex| vertex == place)));
+        assert!(sample(&x, 3, &[[0, 1, 9]], 2, 0).is_err());
     }
 
     #[test]

@@ -81,6 +81,17 @@ impl ShapeFile {
             .map_err(refused)
     }
 
+    /// `count` places on the shape to look at, each as likely as another.
+    ///
+    /// # Errors
+    /// Where a face names no point.
+    pub fn sample(&self, count: usize) -> Result<Float64Array, JsError> {
+        let faces = self.0.faces().unwrap_or_default();
+        placement::sample(self.0.positions(), self.0.dim(), faces, count, 0)
+            .map(|places| Float64Array::from(&places[..]))
+            .map_err(refused)
+    }
+
     /// The same file with other positions (n x dim) and its normals turned by `maps` (n x dim x dim): its bytes, then name and bytes
     /// of each side file that changed, which are called after `stem`.
     ///
