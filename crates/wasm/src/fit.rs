@@ -1,8 +1,9 @@
 //! Weights, and points bound to them.
 
 use js_sys::{Array, Float32Array, Float64Array};
+use neuralmls_core::advice::{Better, Kind, Probe};
 use neuralmls_core::progress::Progress;
-use neuralmls_core::{Deformer, Error, InverseDistance, PointTree, Transform};
+use neuralmls_core::{Deformer, Error, Frame, InverseDistance, PointTree, Transform};
 use wasm_bindgen::prelude::*;
 
 use crate::handles::{named, Handles};
@@ -70,8 +71,14 @@ impl Weights {
 /// The points of a shape, and the control points themselves, bound to weights.
 #[wasm_bindgen]
 pub struct Fit {
+    weights: Weights,
+    dim: usize,
+    /// The longest side of the box.
+    side: f64,
     points: Deformer,
     control_points: Handles,
+    /// Made when it is first asked for.
+    probe: Option<Probe>,
 }
 
 #[wasm_bindgen]
@@ -98,6 +105,55 @@ impl Fit {
         adherence: f64,
     ) -> Result<Array, JsError> {
         self.control_points.land(q, transform, temperature, adherence)
+    }
+
+    /// What is likely bad about the shape when the control points are pulled to `q`, looked at in `places` (k x dim, always the same): for each
+    /// thing its kind, how bad, the worst place, the two control points next to it (their numbers), and what is better: "soft", a temperature,
+    /// or null, with the part that is left.
+    ///
+    /// # Errors
+    /// As [`Fit::land`].
+    pub fn advise(
+        &mut self,
+        places: &[f64],
+        q: &[f64],
+        transform: &str,
+        temperature: f64,
+        adherence: f64,
+    ) -> Result<Array, JsError> {
+        let used = match self.control_points.aimed(q, transform, temperature, adherence)?.soft {
+            None => adherence,
+            Some(_) => 0.0,
+        };
+        if self.probe.is_none() {
+            let points = Probe::points(places, self.dim, self.side);
+            let logits = self.weights.logits(&points, None, &mut |_| true).map_err(refused)?;
+            let own = self.control_points.logits().to_vec();
+            let probe =
+                Probe::new(&self.weights.p, self.dim, places, self.side, logits, own, Transform::Rigid);
+            self.probe = Some(probe.map_err(refused)?);
+        }
+        let result = Array::new();
+        if let Some(probe) = &mut self.probe {
+            probe.set_transform(named(transform)?);
+            for advice in probe.advise(q, temperature, used).map_err(refused)? {
+                let (kind, amount) = match advice.kind {
+                    Kind::Folds(part) => ("folds", part),
+                    Kind::Torn(stretch) => ("torn", stretch),
+                    Kind::Ungoverned(far) => ("ungoverned", far),
+                };
+                let (better, left) = match advice.better {
+                    Some((Better::Temperature(other), left)) => (JsValue::from_f64(other), left),
+                    Some((Better::Soft, left)) => (JsValue::from_str("soft"), left),
+                    None => (JsValue::NULL, 0.0),
+                };
+                let [first, second] = advice.near.map(|i| JsValue::from_f64(i as f64));
+                let place = JsValue::from_f64(advice.place as f64);
+                let told = [JsValue::from_str(kind), JsValue::from_f64(amount), place, first, second, better];
+                result.push(&told.iter().chain([&JsValue::from_f64(left)]).collect::<Array>());
+            }
+        }
+        Ok(result)
     }
 
     /// The points' new positions (n x dim), then their maps (n x dim x dim) if `maps`.
@@ -129,9 +185,10 @@ impl Fit {
 
 impl Fit {
     pub(crate) fn new(
-        weights: &Weights,
+        weights: Weights,
         x: &[f64],
         dim: usize,
+        frame: Frame,
         tree: Option<&PointTree>,
         progress: &mut Progress<'_>,
     ) -> Result<Fit, Error> {
@@ -139,6 +196,7 @@ impl Fit {
         let own = weights.logits(p, None, &mut |_| true)?;
         let control_points = Handles::of(p, dim, own)?;
         let logits = weights.logits(x, tree, progress)?;
-        Ok(Fit { points: Deformer::new(x.to_vec(), dim, p, logits, Transform::Rigid)?, control_points })
+        let points = Deformer::new(x.to_vec(), dim, p, logits, Transform::Rigid)?;
+        Ok(Fit { dim, side: 2.0 * frame.half, points, control_points, probe: None, weights })
     }
 }

@@ -4,7 +4,7 @@ import type { Soft } from "../model/handles.ts";
 import type { PointId, Session } from "../model/session.ts";
 import { EMPTY_SESSION } from "../model/session.ts";
 import { DEFAULT_VIEW, type View } from "../model/view.ts";
-import type { Files, Opened } from "../worker/protocol.ts";
+import type { Advice, Files, Opened } from "../worker/protocol.ts";
 
 export interface OpenShape {
   opened: Opened;
@@ -62,6 +62,8 @@ export interface State {
   distances: ReadonlyMap<PointId, number>;
   /** Why control points are left soft though more adherence is set, and which one is to blame. */
   soft: (Soft & { id: PointId }) | null;
+  /** What is likely bad about the shape as it is, and the control points that it is about. */
+  advice: readonly (Advice & { ids: PointId[] })[];
   /** The GPU cannot hold the weights: the core computes the frames. */
   slowFrames: boolean;
   busy: Busy | null;
@@ -84,6 +86,7 @@ export const INITIAL_STATE: State = {
   comparisonFit: { status: "none" },
   distances: new Map(),
   soft: null,
+  advice: [],
   slowFrames: false,
   busy: null,
   toasts: [],

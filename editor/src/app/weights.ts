@@ -56,7 +56,7 @@ export class Weights {
       this.#keys[slot] = "";
       this.#unbind(slot);
     }
-    this.#store.set({ fit: { status: "none" }, comparisonFit: { status: "none" }, distances: new Map(), soft: null, slowFrames: false });
+    this.#store.set({ fit: { status: "none" }, comparisonFit: { status: "none" }, distances: new Map(), soft: null, advice: [], slowFrames: false });
   }
 
   /** Fits where something has changed, and tells where the control points land. */

@@ -10,6 +10,9 @@ import type { Moved } from "./messages.ts";
 import { type CallOptions, type Core, CoreError, type Files, type Fitted, type Motion, type Slot } from "./protocol.ts";
 import { Remote } from "./remote.ts";
 
+/** Places that are looked at for advice: as many as the command line's. */
+const PLACES = 4000;
+
 /** Starts loading the core; the first call waits for it. */
 export function createCore(): Core {
   return new Client(compiled());
@@ -46,6 +49,8 @@ interface Open {
   x: Float64Array;
   dim: number;
   hasNormals: boolean;
+  /** Where advice is looked for. */
+  places: Promise<Float64Array> | null;
 }
 
 /** A worker that has the points, and its newest fit. */
@@ -72,7 +77,7 @@ class Client implements Core {
     const { remote, give } = await this.#read(files, name, options);
     const { opened, x } = give;
     this.close();
-    this.#shape = { remote, files, name, x, dim: opened.dim, hasNormals: opened.hasNormals };
+    this.#shape = { remote, files, name, x, dim: opened.dim, hasNormals: opened.hasNormals, places: null };
     this.#start("main");
     return opened;
   }
@@ -105,6 +110,12 @@ class Client implements Core {
 
   async land(motion: Motion, options: CallOptions & { slot?: Slot } = {}) {
     return (await this.#fitted(options.slot)).call("land", { motion }, options);
+  }
+
+  async advise(motion: Motion, options: CallOptions = {}) {
+    const shape = this.#present();
+    shape.places ??= this.#reader().then((reader) => reader.call("sample", { count: PLACES }));
+    return (await this.#fitted()).call("advise", { motion, places: await shape.places }, options);
   }
 
   async handles(controlPoints: Float64Array, ownLogits: Float32Array) {

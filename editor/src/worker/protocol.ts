@@ -116,6 +116,18 @@ export interface Deformed {
   landed: Landed;
 }
 
+/** One thing that is likely bad about a deformation (crates/core/src/advice.rs). */
+export interface Advice {
+  kind: "folds" | "torn" | "ungoverned";
+  /** The part of the shape that is folded; the greatest stretch; how many spacings of the control points away. */
+  amount: number;
+  /** The control points next to the worst place, by their numbers. */
+  near: number[];
+  /** What at least halves it, tried: another temperature, or soft handles; and the part of the shape that is left. */
+  better: number | "soft" | null;
+  left: number;
+}
+
 /** Files to be given to the person: the shape first, then its changed side files (buffers of a .gltf). */
 export interface Saved {
   files: { name: string; bytes: Uint8Array<ArrayBuffer> }[];
@@ -147,6 +159,8 @@ export interface Core {
   deform(motion: Motion, options?: CallOptions & { slot?: Slot }): Promise<Deformed>;
   /** Where the control points land: cheap, for each one's distance to its target. */
   land(motion: Motion, options?: CallOptions & { slot?: Slot }): Promise<Landed>;
+  /** What is likely bad about a deformation; nothing where all is well. */
+  advise(motion: Motion, options?: CallOptions): Promise<Advice[]>;
   /** Exact handles for this thread; `controlPoints` (m x 3) and `ownLogits` (m x m) of a fit to the open shape. */
   handles(controlPoints: Float64Array, ownLogits: Float32Array): Promise<Handles>;
   /**

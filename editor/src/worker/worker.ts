@@ -46,24 +46,21 @@ const operations: { [O in Operation]: (ask: Ask<O>, tell: Tell) => Give<O> } = {
       spec.kind === "neural"
         ? core.train(p, spec.width, BigInt(spec.seed), spec.steps ?? undefined, tell("train"))
         : core.classic(p, spec.alpha, spec.epsilon);
-    try {
-      const trained = performance.now();
-      fitted = core.evaluate(weights, tell("evaluate"));
-      const evaluated = performance.now();
-      const ownLogits = fitted.own_logits() as Float32Array<ArrayBuffer>;
-      const untilSmall = spec.kind === "neural" && spec.steps === null;
-      return {
-        controlPoints: p.length / dim,
-        logits: fitted.logits() as Float32Array<ArrayBuffer>,
-        ownLogits,
-        loss: weights.loss() ?? null,
-        steps: weights.steps(),
-        milliseconds: { train: spec.kind === "neural" ? trained - began : 0, evaluate: evaluated - trained },
-        shared: untilSmall ? sharing(ownLogits, p.length / dim) : [],
-      } satisfies Fitted;
-    } finally {
-      weights.free();
-    }
+    const [loss, steps] = [weights.loss() ?? null, weights.steps()];
+    const trained = performance.now();
+    fitted = core.evaluate(weights, tell("evaluate")); // which takes them
+    const evaluated = performance.now();
+    const ownLogits = fitted.own_logits() as Float32Array<ArrayBuffer>;
+    const untilSmall = spec.kind === "neural" && spec.steps === null;
+    return {
+      controlPoints: p.length / dim,
+      logits: fitted.logits() as Float32Array<ArrayBuffer>,
+      ownLogits,
+      loss,
+      steps,
+      milliseconds: { train: spec.kind === "neural" ? trained - began : 0, evaluate: evaluated - trained },
+      shared: untilSmall ? sharing(ownLogits, p.length / dim) : [],
+    } satisfies Fitted;
   },
 
   deform({ motion, maps }, tell) {
@@ -77,6 +74,16 @@ const operations: { [O in Operation]: (ask: Ask<O>, tell: Tell) => Give<O> } = {
     const [places, reason, index, amount, remedy] = present(fitted).land(targets, transform, temperature, adherence);
     const soft: Soft | null = reason === undefined ? null : { reason, index, amount, remedy };
     return { places: widen(places, present(points).dim), soft };
+  },
+
+  sample({ count }) {
+    return present(file).sample(count) as Float64Array<ArrayBuffer>;
+  },
+
+  advise({ motion, places }) {
+    const { targets, transform, temperature, adherence } = inDimension(motion);
+    const found = present(fitted).advise(places, targets, transform, temperature, adherence);
+    return found.map(([kind, amount, , first, second, better, left]) => ({ kind, amount, near: [first, second], better, left }));
   },
 
   write({ name, moved }, tell) {

@@ -116,3 +116,29 @@ test("control points that own little are left soft, with a line that says what w
   await expect(line).toHaveCount(0);
   await expect(editor.locator(".status-bar")).toContainText("on target");
 });
+
+test("when a drag has ended it is said what is likely bad, and about which control points", async ({ editor }) => {
+  await openSample(editor, "Chair");
+  await fitted(editor);
+  const advice = editor.locator(".advice");
+  await editor.waitForTimeout(1500); // it would be there by now
+  await expect(advice).toHaveCount(0);
+  const { points } = await session(editor);
+  const left = points.find(({ name }) => name === "back-top-left")!;
+  await choose(editor, left.name);
+  const field = editor.getByRole("textbox", { name: "Target x" });
+  await field.fill(String(-2 * left.target[0]));
+  await field.press("Enter");
+  const line = editor.locator(".advice").getByText(/of the shape is folded over|Torn between/).first();
+  await expect(line).toBeVisible();
+  await line.scrollIntoViewIfNeeded();
+  await editor.screenshot({ path: picture("advice.png") });
+  const told = await editor.evaluate(() => neuralmls.state().advice);
+  await line.click();
+  expect(told.some(({ ids }) => ids.includes(left.id))).toBe(true);
+  const { selection } = await session(editor);
+  expect(told[0].ids).toEqual(expect.arrayContaining([...selection]));
+  await editor.keyboard.press("Control+z"); // the selection
+  await editor.keyboard.press("Control+z"); // and the move
+  await expect(line).toHaveCount(0);
+});
