@@ -5,7 +5,7 @@ import { useAppState } from "./useStore.ts";
 
 /** How things stand, quietly. */
 export function StatusBar() {
-  const { fit, comparisonFit, session, shape, distances, soft, view, autosaved, slowFrames } = useAppState();
+  const { fit, comparisonFit, session, shape, distances, soft, advice, view, autosaved, slowFrames } = useAppState();
   if (!shape) return null;
   const moved = session.points.filter(isMoved);
   const away = moved.map((point) => distances.get(point.id)).filter((d) => d !== undefined);
@@ -23,6 +23,7 @@ export function StatusBar() {
           {soft ? ", left soft" : ""}
         </span>
       )}
+      {advice.length > 0 && <span>worth a look: {advice.map(({ kind }) => WORDS[kind]).join(", ")}</span>}
       {slowFrames && <span>too many weights for the graphics card: frames are computed by the core</span>}
       <span class="spacer" />
       {view.moves === "position" && <span class="mode">moving places at rest</span>}
@@ -31,6 +32,8 @@ export function StatusBar() {
     </footer>
   );
 }
+
+const WORDS = { folds: "folds", torn: "tears", ungoverned: "a part without a control point" } as const;
 
 function textOf(fit: FitState): string {
   switch (fit.status) {
