@@ -9,3 +9,6 @@ export const contentSecurityPolicy = [
   "base-uri 'none'",
   "form-action 'none'",
 ].join("; ");
+
+/** Where the built editor has it, for who serves it with headers. */
+export const fileOfPolicy = "content-security-policy.txt";

@@ -1,13 +1,16 @@
 import { defineConfig } from "vitest/config";
-import { contentSecurityPolicy } from "./security.ts";
+import { contentSecurityPolicy, fileOfPolicy } from "./security.ts";
 
 export default defineConfig({
   base: "./",
   plugins: [
     {
-      // For static hosting, where nobody sends headers. Not in development, whose hot reloading needs inline scripts.
+      // In the page for static hosting, where nobody sends headers; beside it for `neuralmls edit`, which does. Not in development, whose hot reloading needs inline scripts.
       name: "content-security-policy",
       apply: "build",
+      generateBundle() {
+        this.emitFile({ type: "asset", fileName: fileOfPolicy, source: contentSecurityPolicy });
+      },
       transformIndexHtml: () => [
         {
           tag: "meta",

@@ -28,7 +28,7 @@ def main() -> None:
             weights = nm.NeuralWeights.fit(found.p, bounds=found.shape.bounds, **TRAININGS[training])
             probe = Probe(found.shape.positions, found.shape.faces, weights, found.q)
             for adherence in (0.0, 1.0):
-                positions, determinants, stretches = probe.core.look(probe.q, 1.0, adherence)
+                positions, determinants, stretches = probe.core.look(probe.q, probe.turns, 1.0, adherence)
                 moves = np.linalg.norm(positions - probe.places, axis=1) > MOVED * probe.side
                 short = probe.missed(1.0, adherence).max() / longest
                 print(f"| {found.title}, {training.partition(':')[0]}, adherence {adherence:g} | {short:.3f} ", end="")

@@ -11,6 +11,7 @@ import pytest
 
 from neuralmls.control_points import ControlPoints
 from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
+from neuralmls.turns import Turn
 
 DOCS = Path(__file__).parent.parent / "docs"
 SCHEMA = json.loads((DOCS / "control-points.schema.json").read_text(encoding="utf-8"))
@@ -79,9 +80,10 @@ def test_the_documented_examples_are_read_and_valid(tmp_path: Path) -> None:
     jsonschema.validate(json.loads(examples["json"]), SCHEMA)
     for ending in ("json", "csv"):
         points = ControlPoints.read(written(tmp_path, examples[ending], ending))
-        assert points.names == ("seat", "back-top")
-        assert points.sources.tolist() == [[0, 0.45, 0], [0, 0.95, -0.2]]
-        assert points.targets.tolist() == [[0, 0.45, 0], [0, 0.9, -0.4]]
+        assert points.names[:2] == ("seat", "back-top")
+        assert points.sources[:2].tolist() == [[0, 0.45, 0], [0, 0.95, -0.2]]
+        assert points.targets[:2].tolist() == [[0, 0.45, 0], [0, 0.9, -0.4]]
+        assert points.turns[2:] == (() if ending == "csv" else (Turn((0, 1, 0), 40),))
 
 
 def test_unknown_keys_are_passed_over(tmp_path: Path) -> None:
@@ -308,3 +310,112 @@ def test_control_points_far_outside_are_named() -> None:
     assert "3998 units" in target
     with pytest.raises(ControlPointError, match="3 coordinates each, but the shape has 2"):
         far.check([[0, 0], [1, 1]])
+
+
+TURNED = {"name": "arm", "position": [1, 0, 0], "rotation": {"axis": [0, 2, 0], "degrees": 90}, "scale": 1.5}
+
+
+def test_a_turned_control_point_is_read_as_a_person_writes_it(tmp_path: Path) -> None:
+    jsonschema.validate(document(SEAT, TURNED), SCHEMA)
+    points = ControlPoints.read(written(tmp_path, json.dumps(document(SEAT, TURNED))))
+    assert points.rotations is not None
+    assert points.scales is not None
+    assert np.isnan(points.rotations[0]).all()
+    assert np.isnan(points.scales[0])
+    assert np.allclose(points.rotations[1], [[0, 0, 1], [0, 1, 0], [-1, 0, 0]], atol=1e-15)
+    assert points.scales[1] == 1.5
+    held = ControlPoints.read(written(tmp_path, json.dumps(document({"name": "a", "position": [0, 0, 0], "scale": 2}))))
+    assert held.rotations is not None
+    assert held.rotations[0].tolist() == np.eye(3).tolist()
+
+
+def test_without_turns_there_are_no_rotations_and_files_are_as_before(tmp_path: Path) -> None:
+    points = ControlPoints.read(written(tmp_path, json.dumps(document(SEAT, BACK))))
+    assert points.rotations is None
+    assert points.scales is None
+    assert not points.is_turned
+    points.write(tmp_path / "again.json")
+    assert (tmp_path / "again.json").read_text() == (
+        '{\n  "format": "neuralmls-control-points",\n  "version": 1,\n  "control_points": [\n'
+        '    {"name": "seat", "position": [0.0, 0.45, 0.0], "target": [0.0, 0.45, 0.0]},\n'
+        '    {"name": "back", "position": [0.0, 0.95, -0.2], "target": [0.0, 0.9, -0.4]}\n  ]\n}\n'
+    )
+
+
+@pytest.mark.parametrize("d", [1, 2, 3])
+def test_turns_come_back_bit_for_bit(tmp_path: Path, d: int) -> None:
+    rng = np.random.default_rng(d)
+    axes = rng.normal(size=(5, 3))
+    turns = [
+        Turn(tuple(axis.tolist()) if d == 3 else (), float(rng.uniform(-400, 400)) if d > 1 else 0.0, float(scale))
+        for axis, scale in zip(axes, rng.uniform(0.1, 3, 5), strict=True)
+    ]
+    points = ControlPoints(rng.normal(size=(6, d)), turns=[*turns, None])
+    points.write(tmp_path / "turned.json")
+    jsonschema.validate(json.loads((tmp_path / "turned.json").read_text()), SCHEMA)
+    again = ControlPoints.read(tmp_path / "turned.json")
+    assert again.turns == points.turns
+    assert again.rotations is not None
+    assert points.rotations is not None
+    assert again.rotations.tobytes() == points.rotations.tobytes()
+
+
+def test_csv_that_would_lose_a_turn_is_refused(tmp_path: Path) -> None:
+    points = ControlPoints([[0, 0, 0]], turns=[Turn((0, 0, 1), 10)])
+    with pytest.raises(FileError, match="holds no rotations"):
+        points.write(tmp_path / "points.csv")
+    assert not (tmp_path / "points.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"rotation": 40}, ("rotation", "axis and degrees", "40")),
+        ({"rotation": {"degrees": 40}}, ("rotation.axis", "3 numbers", "nothing")),
+        ({"rotation": {"axis": [0, 1], "degrees": 40}}, ("rotation.axis", "3 numbers")),
+        ({"rotation": {"axis": [0, 0, 0], "degrees": 40}}, ("axis", "not all 0")),
+        ({"rotation": {"axis": [0, 1, 0]}}, ("rotation.degrees", "nothing")),
+        ({"rotation": {"axis": [0, 1, 0], "degrees": True}}, ("rotation.degrees", "true")),
+        ({"scale": 0}, ("scale", "above 0", "0")),
+        ({"scale": "2"}, ("scale", "number", '"2"')),
+    ],
+)
+def test_a_turn_that_is_none_is_refused_by_its_place(
+    tmp_path: Path, changes: dict[str, object], words: tuple[str, ...]
+) -> None:
+    message = refusal(written(tmp_path, json.dumps(document(SEAT, TURNED | changes))))
+    assert "control_points[1]" in message
+    for word in words:
+        assert word in message
+
+
+def test_turns_add_up_and_unknown_names_are_refused() -> None:
+    points = ControlPoints([[0, 0, 0], [1, 0, 0]], names=["a", "b"]).turned({"a": Turn((0, 0, 1), 30)})
+    again = points.turned({"a": Turn((0, 0, 1), 45)}).moved({"b": [0, 1, 0]})
+    assert again.turns[1] is None
+    assert again.turns[0] is not None
+    assert again.turns[0].degrees == pytest.approx(75)
+    assert again.turns[0].axis == pytest.approx((0, 0, 1))
+    with pytest.raises(ArgumentError, match="nearest name is 'a'"):
+        points.turned({"aa": Turn((0, 0, 1), 30)})
+    with pytest.raises(ArgumentError, match="'b' is in space"):
+        points.turned({"b": Turn(degrees=30)})
+    with pytest.raises(ControlPointError, match="'p1' has 2 coordinates"):
+        ControlPoints([[0, 0]], turns=[Turn((0, 0, 1), 30)])
+
+
+def test_any_rotation_is_a_turn() -> None:
+    rng = np.random.default_rng(0)
+    for degrees in (0, 1e-13, 1e-6, 30, 90, 179.999999, 180, -180, 720, *rng.uniform(-360, 360, 20)):
+        for axis in ((1, 0, 0), (0, -1, 0), (0, 0, 1e-200), (1e200, 1e200, 0), tuple(rng.normal(size=3))):
+            matrix = Turn(axis, degrees).matrix
+            assert np.abs(matrix.T @ matrix - np.eye(3)).max() < 4e-15
+            assert np.abs(Turn.of(matrix).matrix - matrix).max() < 1e-14
+    for matrix, words in (
+        (np.diag([1.0, 1.0, -1.0]), "determinant is -1"),
+        (2 * np.eye(3), "not orthonormal"),
+        (np.full((2, 2), np.nan), "not finite"),
+        (np.ones((2, 3)), "shape"),
+    ):
+        with pytest.raises(ArgumentError, match=words):
+            Turn.of(matrix)

@@ -90,6 +90,11 @@ def test_soups_and_degenerate_faces_are_drawn(tmp_path: Path) -> None:
     assert (drawn(tmp_path / "soup.png").min(axis=2) < 240).mean() > 0.1
 
 
+def test_faces_without_any_area_are_drawn_as_a_cloud(tmp_path: Path) -> None:
+    render([Panel("flat", TETRAHEDRON, [[0, 1, 1], [2, 2, 2]])], tmp_path / "flat.png", width=320)
+    drawn(tmp_path / "flat.png")
+
+
 def test_a_single_place_is_drawn(tmp_path: Path) -> None:
     render([Panel("point", np.zeros((1, 3)))], tmp_path / "point.png", width=200)
     drawn(tmp_path / "point.png")

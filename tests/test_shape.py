@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import re
 import struct
+import sys
 import threading
 from pathlib import Path
 
@@ -110,6 +113,75 @@ def test_a_scene_opens_in_another_folder(tmp_path):
     assert np.array_equal(nm.read(same / "shape.gltf").positions, shape.positions)
 
 
+def test_a_set_of_files_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
+    """Scene and buffers replace those that were read, so that half of the set would be the end of both."""
+    there = tmp_path / "there"
+    there.mkdir()
+    nm.read(gltf(tmp_path, buffers=2)).write(there / "shape.gltf", nm.read(tmp_path / "shape.gltf").positions + 1)
+    shape = nm.read(there / "shape.gltf")
+    before = {file.name: file.read_bytes() for file in there.iterdir()}
+    assert set(before) == {"shape.gltf", "shape.bin", "shape-2.bin", "skin.png"}
+    full_after(monkeypatch, 2)
+    with pytest.raises(nm.FileError, match=r"shape\.gltf: cannot write: No space left on device$"):
+        shape.write(there / "shape.gltf", shape.positions + 1)
+    assert {file.name: file.read_bytes() for file in there.iterdir()} == before
+    monkeypatch.undo()
+    shape.write(there / "shape.gltf", shape.positions + 1)
+    assert np.array_equal(nm.read(there / "shape.gltf").positions, shape.positions + 1)
+
+
+def test_companions_that_cannot_be_copied_leave_the_shape_unwritten(tmp_path, monkeypatch):
+    there = tmp_path / "there"
+    there.mkdir()
+    (there / "b.obj").write_text("precious")
+    (tmp_path / "a.obj").write_text(TRIANGLE)
+    (tmp_path / "red paint.mtl").write_text("newmtl red\n")
+    shape = nm.read(tmp_path / "a.obj")
+    full_after(monkeypatch, 0)
+    with pytest.raises(nm.FileError, match=r"red paint\.mtl: cannot write: No space left on device$"):
+        shape.write(there / "b.obj", shape.positions + 1)
+    assert {file.name: file.read_bytes() for file in there.iterdir()} == {"b.obj": b"precious"}
+
+
+def full_after(monkeypatch, count):
+    """A disk that has room for so many files."""
+    room = iter(range(count))
+
+    def sync(_descriptor):
+        if next(room, None) is None:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "fsync", sync)
+
+
+def test_a_companion_with_the_name_of_the_output_does_not_take_its_place(tmp_path):
+    there = tmp_path / "there"
+    there.mkdir()
+    (tmp_path / "a.obj").write_text(TRIANGLE.replace("red paint.mtl", "b.obj"))
+    (tmp_path / "b.obj").write_text("newmtl red\n")
+    shape = nm.read(tmp_path / "a.obj")
+    assert shape.write(there / "b.obj", shape.positions + 1) == [there / "b.obj"]
+    assert np.array_equal(nm.read(there / "b.obj").positions, shape.positions + 1)
+
+
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="names are Unicode here")
+def test_names_that_are_no_text_are_written(tmp_path):
+    shape = nm.read(gltf(tmp_path))
+    path = tmp_path / os.fsdecode(b"bent \xff.gltf")
+    assert [os.fsencode(file.name) for file in shape.write(path, shape.positions + 1)] == [
+        b"bent \xff.gltf",
+        "bent \N{REPLACEMENT CHARACTER}.bin".encode(),
+    ]
+    assert np.array_equal(nm.read(path).positions, shape.positions + 1)
+
+
+def test_names_as_long_as_the_disk_takes_them_are_written(tmp_path):
+    path = tmp_path / ("\N{CHAIR}" * 62 + ".obj")
+    path.write_text(TRIANGLE)
+    shape = nm.read(path)
+    assert shape.write(path, shape.positions + 1) == [path]
+
+
 def test_nothing_is_replaced_without_leave(tmp_path):
     shape = nm.read(gltf(tmp_path))
     (tmp_path / "bent.bin").write_bytes(b"mine")
@@ -152,8 +224,9 @@ def test_what_is_no_path_is_refused(tmp_path):
     shape = nm.read(tmp_path / "a.obj")
     points = nm.ControlPoints([[0, 0, 0]])
     for call in (nm.read, nm.ControlPoints.read, points.write, lambda path: shape.write(path, shape.positions)):
-        with pytest.raises(nm.ArgumentError, match="path: expected the path of a file, found None"):
-            call(None)
+        for path in (None, "a\0.obj", "a\ud800.obj"):
+            with pytest.raises(nm.ArgumentError, match=re.escape(f"path: expected the path of a file, found {path!r}")):
+                call(path)
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")

@@ -164,8 +164,8 @@ def test_a_saved_network_gives_the_same_logits(tmp_path: Any) -> None:
         (np.empty((0, 3)), None, "x: expected at least one point"),
         (box((0, 0, 0), (1, 1, 1)), [[0, 1, 8]], "faces: expected vertices 0 to 7, found 0 to 8"),
         (box((0, 0, 0), (1, 1, 1)), [[0, 1, -1]], "found -1 to 1"),
-        (box((0, 0, 0), (1, 1, 1)), [[0.0, 1.0, 2.0]], r"expected an \(f, 3\) array of integers"),
-        (box((0, 0, 0), (1, 1, 1)), [[0, 1]], r"expected an \(f, 3\) array of integers"),
+        (box((0, 0, 0), (1, 1, 1)), [[0.0, 1.0, 2.0]], r"expected an \(f, 3\) array of whole numbers"),
+        (box((0, 0, 0), (1, 1, 1)), [[0, 1]], r"expected an \(f, 3\) array of whole numbers"),
     ],
 )
 def test_refuses_in_one_sentence(x: Any, faces: Any, says: str) -> None:

@@ -21,7 +21,7 @@ def test_classic_weights_are_the_formula(alpha, epsilon):
     squared = ((X[:, None] - P) ** 2).sum(axis=2)
     expected = 1 / (squared**alpha + epsilon)
     expected /= expected.sum(axis=1, keepdims=True)
-    weights = nm.InverseDistanceWeights(P, alpha=alpha, epsilon=epsilon)
+    weights = nm.InverseDistanceWeights(P, alpha=alpha, epsilon=epsilon, bounds=[[-1] * 3, [1] * 3])
     assert np.abs(nm.softmax(weights.logits(X)) - expected).max() < 1e-6
 
 
@@ -38,8 +38,11 @@ def test_classic_weights_without_bounds_are_the_same_at_any_size(size):
     assert np.abs(found - expected).max() < 1e-6
 
 
-def test_without_bounds_epsilon_is_in_the_units_of_the_coordinates():
-    assert nm.InverseDistanceWeights([[0.0], [8.0]], epsilon=1.0).logits([[2.0]])[0, 0] == pytest.approx(-np.log(5))
+def test_without_bounds_epsilon_counts_in_halves_of_the_longest_side_of_the_control_points_box():
+    weights = nm.InverseDistanceWeights([[0.0], [8.0]], epsilon=1.0)
+    assert weights.logits([[2.0]])[0, 0] == pytest.approx(-np.log(0.5**2 + 1))
+    boxed = nm.InverseDistanceWeights([[0.0], [8.0]], epsilon=1.0, bounds=[[0.0], [8.0]])
+    assert np.array_equal(weights.logits([[2.0]]), boxed.logits([[2.0]]))
 
 
 @pytest.mark.parametrize("logits", [[], 1.0, None, np.empty((3, 0)), [[1.0], [1.0, 2.0]], "logits"])

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from neuralmls.placement import farthest_points
     from neuralmls.point_tree import PointTree
     from neuralmls.shape import Shape, read
+    from neuralmls.turns import Turn
     from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
     from neuralmls.weights.softmax import softmax
 
@@ -44,6 +45,7 @@ __all__ = [
     "Shape",
     "ShapeAwareWeights",
     "Soft",
+    "Turn",
     "Weights",
     "__version__",
     "advise",
@@ -72,6 +74,7 @@ _HOMES = {
     "Shape": "shape",
     "ShapeAwareWeights": "weights",
     "Soft": "exact",
+    "Turn": "turns",
     "Weights": "weights",
     "advise": "advice",
     "deform": "pipeline",

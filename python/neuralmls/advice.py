@@ -16,6 +16,7 @@ from neuralmls.arrays import as_number
 from neuralmls.errors import ArgumentError, NeuralMLSError
 from neuralmls.probe import Array, Probe
 from neuralmls.protocol import Transform, Weights
+from neuralmls.turns import Rotations, Scales
 from neuralmls.weights import ShapeAwareWeights
 
 Kind: TypeAlias = Literal["misses", "folds", "torn", "ungoverned"]
@@ -60,6 +61,8 @@ def advise(
     transform: Transform = "rigid",
     temperature: float = 1.0,
     adherence: float = 0.0,
+    rotations: Rotations = None,
+    scales: Scales = None,
     names: Sequence[str] | None = None,
 ) -> list[Advice]:
     """Return what is likely bad about a deformation, and what would help; nothing where all control points stay or
@@ -82,7 +85,7 @@ def advise(
     weights : Weights
         The weight function of the control points, in the units of `x`.
     targets : (m, d)
-    transform, temperature, adherence
+    transform, temperature, adherence, rotations, scales
         As `Deformer` has them.
     names : sequence of m str, optional
         What to call the control points; p1, p2, ... if not given.
@@ -102,14 +105,14 @@ def advise(
     >>> [advice.kind for advice in advise(x, None, weights, [[0.0], [0.7], [0.3], [1.0]])]
     ['folds']
     """
-    probe = Probe(x, faces, weights, targets, transform)
+    probe = Probe(x, faces, weights, targets, transform, rotations=rotations, scales=scales)
     named = tuple(f"p{i + 1}" for i in range(len(probe.p))) if names is None else tuple(names)
     if len(named) != len(probe.p):
         raise ArgumentError(f"names: expected {len(probe.p)} of them, found {len(named)}")
     setting = _Setting(as_number("temperature", temperature, 0), adherence)
     misses = _misses(probe, named, setting)
     found = [] if misses is None else [misses]
-    for kind, amount, place, near, better in probe.core.advise(probe.q, setting.temperature, adherence):
+    for kind, amount, place, near, better in probe.core.advise(probe.q, probe.turns, setting.temperature, adherence):
         at = probe.places[place]
         if kind == "ungoverned":
             away = float(np.linalg.norm(at - probe.p[near[0]]))
@@ -161,9 +164,9 @@ def _misses(probe: Probe, names: tuple[str, ...], setting: _Setting) -> Advice |
 
 def _what_arrives(probe: Probe, setting: _Setting) -> str:
     """What takes the control points to their targets."""
-    if probe.exact.aim_carefully(probe.q, setting.temperature).soft is None:
+    if probe.exact.aim_carefully(probe.q, setting.temperature, **probe.carried).soft is None:
         return "exact handles arrive"
-    remedy = probe.exact.remedy(probe.q, setting.temperature)
+    remedy = probe.exact.remedy(probe.q, setting.temperature, **probe.carried)
     if remedy is not None:
         return f"exact handles arrive {remedy}"
     return "even exact handles, a lower temperature or the affine transform do not take them there: move them less"
@@ -194,9 +197,10 @@ def _shape_aware(probe: Probe, setting: _Setting, kind: str) -> str:
         weights = ShapeAwareWeights.fit(probe.p, probe.x, probe.faces)
     except NeuralMLSError:  # no SciPy, or no size to measure by
         return ""
-    other = Probe(probe.x, probe.faces, weights, probe.q, probe.transform)
+    other = Probe(probe.x, probe.faces, weights, probe.q, probe.transform, **probe.carried)
     now, then = (
-        each.core.parts(each.q, setting.temperature, setting.adherence)[kind == "torn"] for each in (probe, other)
+        each.core.parts(each.q, each.turns, setting.temperature, setting.adherence)[kind == "torn"]
+        for each in (probe, other)
     )
     return f"with shape-aware weights it is {_percent(then)}" if then <= now / 2 else ""
 

@@ -39,6 +39,27 @@ def as_points(name: str, values: ArrayLike, dimension: int | None = None) -> NDA
     return points
 
 
+def as_triangles(faces: ArrayLike, count: int) -> NDArray[np.int64]:
+    """Return triangles (f, 3) that name vertices below `count`.
+
+    Raises
+    ------
+    ArgumentError
+        They are of another shape, no whole numbers, or name other vertices.
+    """
+    try:
+        found = np.asarray(faces)
+    except (TypeError, ValueError) as error:
+        raise ArgumentError(f"faces: expected an (f, 3) array of whole numbers: {error}") from error
+    if found.ndim != 2 or found.shape[1] != 3 or found.dtype.kind not in "iu":
+        raise ArgumentError(
+            f"faces: expected an (f, 3) array of whole numbers, found shape {found.shape}, {found.dtype}"
+        )
+    if found.size and (found.min() < 0 or found.max() >= count):
+        raise ArgumentError(f"faces: expected vertices 0 to {count - 1}, found {found.min()} to {found.max()}")
+    return found.astype(np.int64)
+
+
 def as_number(name: str, value: float, low: float, high: float = np.inf, *, open_low: bool = True) -> float:
     """Return a finite number above `low` (or from it on) and up to `high`.
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-import warnings
+from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 
 from neuralmls.errors import FileError
-from neuralmls.files import write_atomically
+from neuralmls.files import read_bytes
 
 # Statements of an MTL file that name an image: all that start with `map_`, and these.
 _IMAGES = {"bump", "disp", "decal", "refl", "norm"}
@@ -25,7 +25,7 @@ def read_beside(folder: Path, name: str) -> bytes:
     if path is None:
         raise FileError(f"'{name}' leaves the shape's folder")
     try:
-        return path.read_bytes()
+        return read_bytes(path)
     except OSError as error:
         raise FileError(f"cannot read '{name}' beside it: {error.strerror or error}") from error
 
@@ -36,38 +36,43 @@ def found_beside(names: list[str], folder: Path) -> dict[str, Path]:
     return {name: path for name, path in paths.items() if path is not None and path.is_file()}
 
 
-def copy_along(names: list[str], source: Path, target: Path) -> list[Path]:
-    """Copy the files of folder `source` that are named, and images that they name, into folder `target`.
+def to_copy(names: list[str], source: Path, target: Path) -> tuple[dict[Path, Path], list[str]]:
+    """What of the named files of folder `source`, and images that they name, is to be copied into folder `target`.
 
-    What is there already stays as it is, with a warning for each file that has another content; what is missing at
-    the source, or leaves its folder, is passed over.
+    What is missing at the source, or leaves its folder, is passed over; what is there already stays as it is.
 
-    Raises
-    ------
-    FileError
-        A file cannot be written.
+    Returns
+    -------
+    where each file goes, and where it is now; a warning for each that stays although it has another content
     """
     if source.resolve() == target.resolve():
-        return []
-    copied, kept = [], []
+        return {}, []
+    copies: dict[Path, Path] = {}
+    warnings = []
     for name, here in found_beside(names, source).items():
         there = _inside(target, name)
         if there is None:
             continue
-        if os.path.lexists(there):
-            if not _same_content(here, there):
-                kept.append((here, there))
-            continue
+        if not os.path.lexists(there):
+            copies[there] = here
+        elif not _same_content(here, there):
+            warnings.append(f"{there}: kept, although it is not the '{here}' that the shape names")
+    return copies, warnings
+
+
+def make_folders(files: Iterable[Path]) -> None:
+    """Make the folders that files are to be written into, where there are none.
+
+    Raises
+    ------
+    FileError
+        One cannot be made.
+    """
+    for file in files:
         try:
-            there.parent.mkdir(parents=True, exist_ok=True)
-            data = here.read_bytes()
+            file.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise FileError(f"{there}: cannot copy '{here}' along: {error.strerror or error}") from error
-        write_atomically(there, data)
-        copied.append(there)
-    for here, there in kept:  # at the end: where warnings are errors, all else is copied first
-        warnings.warn(f"{there}: kept, although it is not the '{here}' that the shape names", stacklevel=3)
-    return copied
+            raise FileError(f"{file}: cannot make its folder: {error.strerror or error}") from error
 
 
 def _same_content(one: Path, other: Path) -> bool:

@@ -13,13 +13,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from neuralmls.errors import FileError
+from neuralmls.errors import ArgumentError, FileError
+from neuralmls.turns import Turn
 
 FORMAT = "neuralmls-control-points"
 VERSION = 1
 AXES = "xyz"
 
-Table = tuple[list[str], list[list[float]], list[list[float]]]  # names, sources, targets
+# Names, sources, targets, turns.
+Table = tuple[list[str], list[list[float]], list[list[float]], list[Turn | None]]
 
 
 def read_text(path: str | os.PathLike[str]) -> str:
@@ -60,6 +62,7 @@ def parse_json(text: str) -> Table:
     names: list[str] = []
     sources: list[list[float]] = []
     targets: list[list[float]] = []
+    turns: list[Turn | None] = []
     for i, entry in enumerate(entries):
         where = f"control_points[{i}]"
         if not isinstance(entry, dict):
@@ -72,7 +75,39 @@ def parse_json(text: str) -> Table:
         names.append(name)
         sources.append(position)
         targets.append(_json_vector(entry, "target", where, len(position)) if "target" in entry else position)
-    return names, sources, targets
+        turns.append(_json_turn(entry, where, len(position)))
+    return names, sources, targets, turns
+
+
+def _json_turn(entry: dict[str, Any], where: str, dimension: int) -> Turn | None:
+    if "rotation" not in entry and "scale" not in entry:
+        return None
+    axis: tuple[float, ...] = (0.0, 0.0, 1.0) if dimension == 3 else ()
+    degrees = 0.0
+    if "rotation" in entry:
+        rotation = entry["rotation"]
+        if dimension == 1:
+            raise FileError(f"{where}.rotation: a control point on a line has none")
+        if not isinstance(rotation, dict):
+            keys = "axis and degrees" if dimension == 3 else "degrees"
+            raise FileError(f"{where}.rotation: expected an object with {keys}, found {_found(entry, 'rotation')}")
+        if dimension == 3:
+            axis = tuple(_json_vector(rotation, "axis", f"{where}.rotation", 3))
+        degrees = _json_number(rotation, "degrees", f"{where}.rotation")
+    scale = _json_number(entry, "scale", where) if "scale" in entry else 1.0
+    try:
+        return Turn(axis, degrees, scale)
+    except ArgumentError as error:
+        raise FileError(f"{where}: {error}") from error
+
+
+def _json_number(entry: dict[str, Any], key: str, where: str) -> float:
+    if type(entry.get(key)) not in (int, float):
+        raise FileError(f"{where}.{key}: expected a number, found {_found(entry, key)}")
+    try:
+        return float(entry[key])
+    except OverflowError as error:
+        raise FileError(f"{where}.{key}: the number is too large") from error
 
 
 def _json_vector(entry: dict[str, Any], key: str, where: str, dimension: int | None) -> list[float]:
@@ -87,15 +122,25 @@ def _json_vector(entry: dict[str, Any], key: str, where: str, dimension: int | N
         raise FileError(f"{where}.{key}: a number is too large") from error
 
 
-def format_json(names: Sequence[str], sources: list[list[float]], targets: list[list[float]]) -> str:
+def format_json(
+    names: Sequence[str], sources: list[list[float]], targets: list[list[float]], turns: Sequence[Turn | None]
+) -> str:
     """Write the JSON form, one control point a line."""
     entries = [
-        {"name": name, "position": position, "target": target}
-        for name, position, target in zip(names, sources, targets, strict=True)
+        {"name": name, "position": position, "target": target} | _turn_keys(turn, len(position))
+        for name, position, target, turn in zip(names, sources, targets, turns, strict=True)
     ]
     lines = ["    " + json.dumps(entry, ensure_ascii=False, allow_nan=False) for entry in entries]
     head = f'{{\n  "format": "{FORMAT}",\n  "version": {VERSION},\n  "control_points": [\n'
     return head + ",\n".join(lines) + "\n  ]\n}\n"
+
+
+def _turn_keys(turn: Turn | None, dimension: int) -> dict[str, Any]:
+    if turn is None:
+        return {}
+    axis = {"axis": list(turn.axis)} if dimension == 3 else {}
+    rotation = {"rotation": axis | {"degrees": turn.degrees}} if dimension > 1 else {}
+    return rotation | ({"scale": turn.scale} if turn.scale != 1 or dimension == 1 else {})
 
 
 def parse_csv(text: str) -> Table:
@@ -122,7 +167,7 @@ def parse_csv(text: str) -> Table:
         raise FileError(f"line {reader.line_num}: not CSV: {error}") from error
     if not names:
         raise FileError("there are no control points below the header line; at least one is needed")
-    return names, sources, targets
+    return names, sources, targets, [None] * len(names)
 
 
 class _Columns:

@@ -14,6 +14,7 @@ from neuralmls.errors import ArgumentError
 from neuralmls.exact import ExactHandles
 from neuralmls.point_tree import PointTree
 from neuralmls.protocol import Transform, Weights
+from neuralmls.turns import Rotations, Scales, as_turns
 
 Floats: TypeAlias = NDArray[np.floating]
 
@@ -93,6 +94,8 @@ class Deformer:
         targets: ArrayLike,
         temperature: float = ...,
         *,
+        rotations: Rotations = ...,
+        scales: Scales = ...,
         adherence: float = ...,
         return_maps: Literal[False] = ...,
         out: NDArray[np.float64] | None = ...,
@@ -105,6 +108,8 @@ class Deformer:
         targets: ArrayLike,
         temperature: float = ...,
         *,
+        rotations: Rotations = ...,
+        scales: Scales = ...,
         adherence: float = ...,
         return_maps: Literal[True],
         out: NDArray[np.float64] | None = ...,
@@ -116,6 +121,8 @@ class Deformer:
         targets: ArrayLike,
         temperature: float = 1.0,
         *,
+        rotations: Rotations = None,
+        scales: Scales = None,
         adherence: float = 0.0,
         return_maps: bool = False,
         out: NDArray[np.float64] | None = None,
@@ -126,9 +133,15 @@ class Deformer:
         Parameters
         ----------
         targets : (m, d)
-            The control points moved, `q`. If all are where they were, the points are returned bit for bit.
+            The control points moved, `q`. If all are where and as they were, the points are returned bit for bit.
         temperature : float > 0
             Of the softmax: below 1 parts move more apart from each other, above 1 more together.
+        rotations : (m, d, d), optional
+            How control points turn: for each a rotation matrix, or None (or NaN) for one that only goes to its target
+            and does not resist turning. What is near a turned control point turns with it.
+        scales : (m,), optional
+            How much larger the surroundings of control points become, above 0, or None (or NaN); a control point with a
+            scale and no rotation is held unturned. Rigid deformations leave scales away.
         adherence : float, 0 to 1
             0: plain moving least squares, which takes the control points near their targets; 1: they arrive, see
             `ExactHandles`.
@@ -146,8 +159,9 @@ class Deformer:
         Raises
         ------
         ArgumentError
-            The targets are not as many finite points as there are control points; the temperature is not above 0;
-            the adherence is not from 0 to 1.
+            The targets, rotations or scales are not as many as there are control points; a target is not finite, a
+            rotation is none (orthonormal columns, determinant 1), a scale is not above 0; the temperature is not above
+            0; the adherence is not from 0 to 1.
         """
         q = as_points("targets", targets, self._p.shape[1])
         if len(q) != len(self._p):
@@ -162,7 +176,8 @@ class Deformer:
         ):
             raise ArgumentError(f"out: expected a writeable C-contiguous float64 array {(self._count, q.shape[1])}")
         if adherence != 0:
-            q = self._handles.aim(q, t, adherence).targets
-        positions, maps = self._core.deform(q, t, return_maps, out, progress)
+            q = self._handles.aim(q, t, adherence, rotations=rotations, scales=scales).targets
+        turns = as_turns(rotations, scales, *q.shape)
+        positions, maps = self._core.deform(q, turns, t, return_maps, out, progress)
         y: Floats = positions if out is not None else positions.astype(self._dtype, copy=False)
         return (y, maps) if maps is not None else y

@@ -12,6 +12,7 @@ from neuralmls import _core
 from neuralmls.arrays import as_number, as_points
 from neuralmls.errors import ArgumentError
 from neuralmls.protocol import Transform, Weights
+from neuralmls.turns import Rotations, Scales, as_turns
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -100,7 +101,15 @@ class ExactHandles:
         logits = np.ascontiguousarray(weights.logits(self._p), np.float32)
         self._core = _core.ExactHandles(self._p, logits, transform)
 
-    def aim(self, targets: ArrayLike, temperature: float = 1.0, adherence: float = 1.0) -> Aim:
+    def aim(
+        self,
+        targets: ArrayLike,
+        temperature: float = 1.0,
+        adherence: float = 1.0,
+        *,
+        rotations: Rotations = None,
+        scales: Scales = None,
+    ) -> Aim:
         """Return the effective targets for `targets`.
 
         Parameters
@@ -111,16 +120,26 @@ class ExactHandles:
             Of the softmax, as in `Deformer.deform`.
         adherence : float, 0 to 1
             1: all the way; 0: where plain moving least squares takes them; between: that part of the way between.
+        rotations : (m, d, d), scales : (m,), optional
+            As in `Deformer.deform`, to which they are to be handed too.
 
         Raises
         ------
         ArgumentError
             The targets are not as many finite points as there are control points; a number is out of its range.
         """
-        aimed, misses, _ = self._core.aim(*self._checked(targets, temperature), adherence)
+        aimed, misses, _ = self._core.aim(*self._checked(targets, temperature, rotations, scales), adherence)
         return Aim(aimed, misses)
 
-    def aim_carefully(self, targets: ArrayLike, temperature: float = 1.0, adherence: float = 1.0) -> Aim:
+    def aim_carefully(
+        self,
+        targets: ArrayLike,
+        temperature: float = 1.0,
+        adherence: float = 1.0,
+        *,
+        rotations: Rotations = None,
+        scales: Scales = None,
+    ) -> Aim:
         """Return the effective targets where they are worth it, else the targets themselves, and why.
 
         Control points are left soft where one has less than 0.25 of the weight at its own place, so that it would be
@@ -129,7 +148,7 @@ class ExactHandles:
 
         Parameters
         ----------
-        targets, temperature, adherence
+        targets, temperature, adherence, rotations, scales
             As `aim` has them.
 
         Raises
@@ -137,17 +156,27 @@ class ExactHandles:
         ArgumentError
             As `aim`.
         """
-        aimed, misses, soft = self._core.aim_carefully(*self._checked(targets, temperature), adherence)
+        aimed, misses, soft = self._core.aim_carefully(
+            *self._checked(targets, temperature, rotations, scales), adherence
+        )
         return Aim(aimed, misses, None if soft is None else Soft(*soft))  # type: ignore[arg-type]
 
-    def remedy(self, targets: ArrayLike, temperature: float = 1.0, adherence: float = 1.0) -> str | None:
+    def remedy(
+        self,
+        targets: ArrayLike,
+        temperature: float = 1.0,
+        adherence: float = 1.0,
+        *,
+        rotations: Rotations = None,
+        scales: Scales = None,
+    ) -> str | None:
         """Return with what the control points would arrive, in words; None where nothing that was tried helps.
 
         Half the temperature is tried, and then the affine transform.
 
         Parameters
         ----------
-        targets, temperature, adherence
+        targets, temperature, adherence, rotations, scales
             As `aim` has them.
 
         Raises
@@ -155,13 +184,15 @@ class ExactHandles:
         ArgumentError
             As `aim`.
         """
-        found = self._core.remedy(*self._checked(targets, temperature), adherence)
+        found = self._core.remedy(*self._checked(targets, temperature, rotations, scales), adherence)
         if found is None:
             return None
         return "with the affine transform" if found[1] is None else f"at temperature {found[1]:g}"
 
-    def _checked(self, targets: ArrayLike, temperature: float) -> tuple[Array, float]:
+    def _checked(
+        self, targets: ArrayLike, temperature: float, rotations: Rotations, scales: Scales
+    ) -> tuple[Array, Array | None, float]:
         q = as_points("targets", targets, self._p.shape[1])
         if len(q) != len(self._p):
             raise ArgumentError(f"targets: expected {len(self._p)} of them, found {len(q)}")
-        return q, as_number("temperature", temperature, 0)
+        return q, as_turns(rotations, scales, *q.shape), as_number("temperature", temperature, 0)

@@ -11,6 +11,7 @@ from neuralmls.arrays import as_points
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ArgumentError
 from neuralmls.protocol import Transform
+from neuralmls.turns import Rotations, Scales
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
 
 WeightsName: TypeAlias = Literal["neural", "shape-aware", "inverse-distance"]
@@ -21,6 +22,8 @@ def deform(
     p: ArrayLike,
     q: ArrayLike,
     *,
+    rotations: Rotations = None,
+    scales: Scales = None,
     weights: WeightsName | Weights = "neural",
     faces: ArrayLike | None = None,
     transform: Transform = "rigid",
@@ -38,6 +41,9 @@ def deform(
         Points: float32 or float64, of any memory layout; never changed.
     p, q : (m, d)
         Control points at rest and moved, in the coordinates of `x`.
+    rotations : (m, d, d), scales : (m,), optional
+        How control points turn, and how much larger their surroundings become; None for those that only move (see
+        `Deformer.deform`).
     weights : "neural", "shape-aware", "inverse-distance", or a weight function of the control points `p`
     faces : (f, 3) integers, optional
         Triangles of the points, for shape-aware weights; without them the points are a cloud.
@@ -86,7 +92,8 @@ def deform(
         function = weights
         if not np.array_equal(as_points("weights.control_points", function.control_points), sources):
             raise ArgumentError("weights: expected a weight function of the control points p, found one of others")
-    return Deformer(x, function, transform=transform).deform(targets, temperature, adherence=float(exact))
+    deformer = Deformer(x, function, transform=transform)
+    return deformer.deform(targets, temperature, rotations=rotations, scales=scales, adherence=float(bool(exact)))
 
 
 def _bounds(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> ArrayLike | None:

@@ -10,15 +10,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from neuralmls.arrays import as_count, as_points
+from neuralmls import _core
+from neuralmls.arrays import as_count, as_points, as_triangles
 from neuralmls.errors import ArgumentError
 
-# Candidates of each kind, as a minimum and for each control point: enough that more of them move no point by
-# more than about a hundredth of the shape.
-LEAST = 20_000
-EACH = 50
 # Points at the most: the candidates have to fit into memory.
 MOST = 100_000
+SEEDS = 2**64 - 1
 
 
 def farthest_points(positions: ArrayLike, faces: ArrayLike | None, count: int, *, seed: int = 0) -> NDArray[np.float64]:
@@ -51,68 +49,55 @@ def farthest_points(positions: ArrayLike, faces: ArrayLike | None, count: int, *
     x = as_points("positions", positions)
     if not len(x):
         raise ArgumentError("positions: expected at least one point, found none")
-    as_count("count", count, 1, MOST)
-    as_count("seed", seed, 0, 2**64 - 1)
-    rng = np.random.default_rng(seed)
-    origin = (x.min(axis=0) + x.max(axis=0)) / 2  # samples keep their digits far from the origin
-    size = max(LEAST, EACH * count)
-    cloud, on_surface = x, np.empty((0, x.shape[1]))
-    if faces is not None and np.size(faces):
-        cloud, on_surface = sample_faces(x - origin, np.asarray(faces), size, rng)
-        cloud = cloud + origin
-    few = cloud if len(cloud) <= size else cloud[rng.permutation(len(cloud))[:size]]
-    candidates = np.concatenate([few, on_surface + origin])
-    chosen = farthest_of(candidates, count)
-    if len(chosen) < count and len(few) < len(cloud):  # the subsample had too few distinct places
-        candidates = np.unique(cloud, axis=0)
-        chosen = farthest_of(candidates, count)
-    if len(chosen) < count:
-        most = f"{len(chosen)}, the number of distinct places of the shape"
-        raise ArgumentError(f"expected a count of at most {most}, found {count}")
-    return candidates[chosen]
+    number, start = as_count("count", count, 1, MOST), as_count("seed", seed, 0, SEEDS)
+    return _core.farthest_points(x, _indices(faces, len(x)), number, start)
 
 
-def sample_faces(
-    x: NDArray[np.float64], faces: NDArray[np.int64], size: int, rng: np.random.Generator
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the vertices of the faces (f, 3) that have area, and `size` samples of them; `x` and none without area."""
-    if faces.min() < 0 or faces.max() >= len(x):
-        raise ArgumentError(f"expected faces to name vertices 0 to {len(x) - 1}, found {faces.min()} to {faces.max()}")
-    corner, u, v = x[faces[:, 0]], x[faces[:, 1]] - x[faces[:, 0]], x[faces[:, 2]] - x[faces[:, 0]]
-    scale = max(float(np.abs(u).max()), float(np.abs(v).max())) or 1.0  # squares neither over- nor underflow
-    uu, vv, uv = (np.einsum("ij,ij->i", a / scale, b / scale) for a, b in ((u, u), (v, v), (u, v)))
-    area = np.sqrt(np.maximum(uu * vv - uv * uv, 0.0))
-    total = float(area.sum())
-    if not total > 0.0:
-        return x, np.empty((0, x.shape[1]))
-    chosen = np.searchsorted(np.cumsum(area), rng.random(size) * total).clip(max=len(area) - 1)
-    s, t = rng.random((2, size, 1))
-    s, t = np.where(s + t > 1.0, 1.0 - s, s), np.where(s + t > 1.0, 1.0 - t, t)
-    samples = corner[chosen] + s * u[chosen] + t * v[chosen]
-    return x[np.unique(faces[area > 0.0])], samples
-
-
-def farthest_of(candidates: NDArray[np.float64], count: int) -> NDArray[np.int64]:
+def farthest_of(candidates: ArrayLike, count: int) -> NDArray[np.int64]:
     """Choose points (n, d) spread evenly, the first the one farthest from the centroid.
 
     Returns
     -------
     (count,) indices; fewer if fewer of the points are distinct
 
+    Raises
+    ------
+    ArgumentError
+        The candidates are no finite points; `count` is no whole number from 0 to 100,000.
+
     Examples
     --------
-    >>> farthest_of(np.array([[0.0], [1.0], [5.0]]), 2).tolist()
+    >>> farthest_of([[0.0], [1.0], [5.0]], 2).tolist()
     [2, 0]
     """
-    centred = candidates - candidates.mean(axis=0)
-    scale = float(np.abs(centred).max()) or 1.0
-    centred /= scale
-    distance = np.full(len(centred), np.inf)
-    far = int(np.einsum("ij,ij->i", centred, centred).argmax())
-    chosen: list[int] = []
-    while len(chosen) < count and distance[far] > 0.0:
-        chosen.append(far)
-        away = centred - centred[far]
-        np.minimum(distance, np.einsum("ij,ij->i", away, away), out=distance)
-        far = int(distance.argmax())
-    return np.array(chosen, dtype=np.int64)
+    x = as_points("candidates", candidates)
+    return _core.farthest_of(x, as_count("count", count, 0, MOST))
+
+
+def sample_surface(positions: ArrayLike, faces: ArrayLike, count: int, *, seed: int = 0) -> NDArray[np.float64]:
+    """Return points of a surface, each place as likely as another.
+
+    Returns
+    -------
+    (count, d) float64; none if no face has area
+
+    Raises
+    ------
+    ArgumentError
+        The positions are no finite points; a face names none of them; a number is out of its range.
+
+    Examples
+    --------
+    >>> bool(sample_surface([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], [[0, 1, 2]], 100).sum(axis=1).max() <= 1.0)
+    True
+    """
+    x = as_points("positions", positions)
+    number, start = as_count("count", count, 0, MOST), as_count("seed", seed, 0, SEEDS)
+    return _core.sample_surface(x, _indices(faces, len(x)), number, start)
+
+
+def _indices(faces: ArrayLike | None, count: int) -> NDArray[np.uint32]:
+    """Triangles as the core takes them, none for a cloud."""
+    if faces is None or not np.size(faces):
+        return np.empty((0, 3), dtype=np.uint32)
+    return np.ascontiguousarray(as_triangles(faces, count), dtype=np.uint32)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,14 +12,21 @@ from neuralmls.arrays import as_points, box_around
 from neuralmls.deformer import Deformer
 from neuralmls.errors import ArgumentError
 from neuralmls.exact import ExactHandles
-from neuralmls.metrics.triangles import as_triangles
-from neuralmls.placement import sample_faces
+from neuralmls.placement import sample_surface
 from neuralmls.protocol import Transform, Weights
+from neuralmls.turns import Rotations, Scales, as_turns
 
 Array: TypeAlias = NDArray[np.float64]
 
 # So many places on the shape.
 PLACES = 4000
+
+
+class _Turns(TypedDict):
+    """What control points carry besides their targets, as `Deformer.deform` takes it."""
+
+    rotations: Rotations
+    scales: Scales
 
 
 class Probe:
@@ -28,6 +35,7 @@ class Probe:
     Parameters
     ----------
     x : (n, d), faces : (f, 3) integers or None, weights : Weights, targets : (m, d), transform : Transform
+    rotations : (m, d, d), scales : (m,), optional
         As `neuralmls.advise` has them.
 
     Raises
@@ -43,12 +51,17 @@ class Probe:
         weights: Weights,
         targets: ArrayLike,
         transform: Transform = "rigid",
+        *,
+        rotations: Rotations = None,
+        scales: Scales = None,
     ) -> None:
         self.p = as_points("weights.control_points", weights.control_points)
         self.x, self.faces, self.weights, self.transform = as_points("x", x, self.p.shape[1]), faces, weights, transform
         if not len(self.x):
             raise ArgumentError("x: expected at least one point, found none")
         self.q = as_points("targets", targets, self.p.shape[1])
+        self.carried: _Turns = {"rotations": rotations, "scales": scales}
+        self.turns = as_turns(rotations, scales, *self.p.shape)
         self.side = 2 * box_around(self.x)[1]
         self.places = _places(self.x, faces)
         self.exact = ExactHandles(weights, transform=transform)
@@ -61,17 +74,14 @@ class Probe:
 
     def missed(self, temperature: float, adherence: float) -> Array:
         """How far each control point ends from its target, (m,)."""
-        aim = self.exact.aim(self.q, temperature, adherence)
-        return np.asarray(np.linalg.norm(self._handles.deform(aim.targets, temperature) - self.q, axis=1))
+        aim = self.exact.aim(self.q, temperature, adherence, **self.carried)
+        arrived = self._handles.deform(aim.targets, temperature, **self.carried)
+        return np.asarray(np.linalg.norm(arrived - self.q, axis=1))
 
 
 def _places(x: Array, faces: ArrayLike | None) -> Array:
     """Places to look at (k, d): on the surface by area, or points of the cloud."""
-    rng = np.random.default_rng(0)
-    if faces is not None and np.size(faces):
-        origin = (x.min(axis=0) + x.max(axis=0)) / 2  # samples keep their digits far from the origin
-        _, samples = sample_faces(x - origin, as_triangles(faces, len(x)), PLACES, rng)
-        if len(samples):
-            places: Array = samples + origin
-            return places
-    return x if len(x) <= PLACES else x[np.sort(rng.permutation(len(x))[:PLACES])]
+    samples = x[:0] if faces is None else sample_surface(x, faces, PLACES)
+    if len(samples):
+        return samples
+    return x if len(x) <= PLACES else x[np.sort(np.random.default_rng(0).permutation(len(x))[:PLACES])]

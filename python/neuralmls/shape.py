@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from neuralmls import _core
 from neuralmls.arrays import as_points
-from neuralmls.companions import copy_along, found_beside, read_beside
+from neuralmls.companions import found_beside, make_folders, read_beside, to_copy
 from neuralmls.errors import ArgumentError, FileError
-from neuralmls.files import as_path, write_atomically
+from neuralmls.files import as_path, read_bytes, write_together
 
 
 class Shape:
@@ -73,6 +74,10 @@ class Shape:
         """The files beside it that it names (materials, textures, buffers) and that are there, by those names."""
         return found_beside(self._file.named_files, self._path.parent)
 
+    def side_files(self, stem: str) -> list[str]:
+        """The files (glTF buffers) that `write` may write beside a file called after `stem` if the shape has moved."""
+        return self._file.side_files(_sayable(stem))
+
     def encode(
         self, positions: ArrayLike, *, maps: ArrayLike | None = None, stem: str | None = None
     ) -> tuple[bytes, dict[str, bytes]]:
@@ -90,7 +95,7 @@ class Shape:
         m = None if maps is None else np.ascontiguousarray(maps, dtype=np.float64)
         if m is not None and m.ndim != 3:
             raise ArgumentError(f"maps: expected an (n, d, d) array, found shape {m.shape}")
-        return self._file.write(x, m, stem)
+        return self._file.write(x, m, None if stem is None else _sayable(stem))
 
     def write(
         self,
@@ -125,22 +130,31 @@ class Shape:
         ArgumentError
             The positions or maps do not fit the shape; a file is there and may not be replaced.
         FileError
-            The ending is of another format, or a file cannot be written; what was there is then untouched.
+            The ending is of another format, or a file cannot be written; all files are then as they were.
         """
         target = as_path("path", path)
         if target.suffix[1:].lower() not in self.extensions:
             endings = ", ".join(f".{ending}" for ending in self.extensions)
             raise FileError(f"{target}: expected the ending {endings}, a file of the format {self.format} stays one")
         data, side_files = self._encode(positions, maps, target.stem)
-        files = {target: data} | {target.parent / name: content for name, _, content in side_files}
-        for file in files:
+        sides = {target.parent / name: content for name, _, content in side_files}
+        for file in [target, *sides]:
             if not overwrite and file.is_file():  # a pipe holds nothing that could be lost
                 raise ArgumentError(f"{file}: there is such a file already")
-        for file in reversed(files):  # the shape last: whoever finds it, finds all that it needs
-            write_atomically(file, files[file])
         replaced = {was for _, was, _ in side_files}
         named = [name for name in self._file.named_files if name not in replaced]
-        return [*files, *copy_along(named, self._path.parent, target.parent)]
+        found, kept = to_copy(named, self._path.parent, target.parent)
+        copies = {there: here for there, here in found.items() if there != target and there not in sides}
+        make_folders(copies)
+        write_together({**copies, **sides, target: data})  # the shape last: whoever finds it, finds all that it needs
+        for sentence in kept:  # at the end: where warnings are errors, all is written first
+            warnings.warn(sentence, stacklevel=2)
+        return [target, *sides, *copies]
+
+
+def _sayable(name: str) -> str:
+    """A file's name as other files can hold it: bytes in it that are no UTF-8 are replaced."""
+    return os.fsencode(name).decode(errors="replace")
 
 
 def read(path: str | os.PathLike[str]) -> Shape:
@@ -155,7 +169,7 @@ def read(path: str | os.PathLike[str]) -> Shape:
     """
     source = as_path("path", path)
     try:
-        data = source.read_bytes()
+        data = read_bytes(source)
     except OSError as error:
         raise FileError(f"{source}: cannot read: {error.strerror or error}") from error
     try:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
 PLY = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
@@ -57,12 +59,23 @@ def test_folder_as_shape(refused, here):
         ("names.csv", HEADER + "a,0,0,0\na,1,0,0\n", ("'a'", "more than one")),
         ("target.csv", "name,x,y,z,target_x\na,0,0,0,1\n", ("line 1", "target_y")),
         ("half.csv", "name,x,y,z,target_x,target_y,target_z\na,0,0,0,1,,2\n", ("line 2", "target_y", "'a'")),
+        ("huge.csv", HEADER + "a,0,0,0\nb,1e300,0,0\n", ("huge.csv, for shape.obj", "the position of 'b'", "1e+150")),
         ("points.txt", HEADER + "a,0,0,0\n", (".json or .csv",)),
     ],
 )
 def test_bad_control_points(refused, here, name, text, words):
     (here / name).write_text(text)
     refused(1, "deform", "shape.obj", "--points", name, "-o", "out.obj", words=words)
+
+
+def test_targets_beyond_all_measure(refused):
+    words = ("the target of 'top'", "1e+150")
+    refused(1, "deform", "shape.obj", "--points", "points.csv", "-o", "o.obj", "--move", "top=1e308,0,0", words=words)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="there is no /dev/zero")
+def test_devices_without_an_end_are_not_read(refused):
+    refused(1, "inspect", "/dev/zero", words=("/dev/zero: cannot read: this is a device, not a file",))
 
 
 def test_missing_control_points(refused):
@@ -108,9 +121,18 @@ CLASSIC = ("--weights", "inverse-distance")
         (("--move", "tpo=0,1,0"), ("'tpo'", "nearest name is 'top'")),
         (("--move", "top=0,1"), ("'top'", "3 finite numbers")),
         (("--move", "top=0,1,inf"), ("'top'", "finite")),
+        (("--move", "top=1_0,0,0"), ("NAME=dx,dy,dz", "top=1_0,0,0")),
         (("--move", "top=up"), ("NAME=dx,dy,dz", "top=up")),
         (("--move", "0,1,0"), ("NAME=dx,dy,dz", "0,1,0")),
         (("--move", "top=0,1,0", "--move", "top=0,2,0"), ("'top'", "twice")),
+        (("--turn", "tpo=y,40"), ("'tpo'", "nearest name is 'top'")),
+        (("--turn", "top=40"), ("'top'", "about an axis")),
+        (("--turn", "top=w,40"), ("NAME=AXIS,DEGREES", "top=w,40")),
+        (("--turn", "top=0,1,40"), ("NAME=AXIS,DEGREES", "top=0,1,40")),
+        (("--turn", "top=0,0,0,40"), ("axis", "not all 0")),
+        (("--turn", "top=y,inf"), ("degrees", "finite")),
+        (("--turn", "y,40"), ("NAME=AXIS,DEGREES", "y,40")),
+        (("--turn", "top=y,40", "--turn", "top=y,50"), ("'top'", "twice")),
         (("--frobnicate",), ("--frobnicate", "deform --help")),
         (("too", "many"), ("unexpected", "deform --help")),
     ],

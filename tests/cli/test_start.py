@@ -12,6 +12,9 @@ import pytest
 import neuralmls
 
 COMMANDS = ("deform", "inspect", "points", "render", "sample", "demo")
+PROGRAM = "import sys; from neuralmls.cli import main; sys.exit(main())"
+# Starts a command with a standard stream that is closed, as a shell does by `>&-`.
+CLOSED = "import os, sys; os.close({0}); os.execv(sys.executable, [sys.executable, '-c', {1!r}, *sys.argv[1:]])"
 
 
 def test_help_lists_every_command(run):
@@ -31,6 +34,28 @@ def test_every_command_has_help_of_at_most_80_columns(run, command):
     ran = run(command, "-h")
     assert ran.code == 0
     assert max(map(len, ran.out.splitlines())) <= 80
+
+
+def test_help_names_every_method_to_choose_from(run):
+    from neuralmls.experiments.methods import METHODS
+    from neuralmls.experiments.poses import POSE_METHODS
+
+    for command, names in ((["compare"], METHODS), (["benchmark", "poses"], POSE_METHODS)):
+        told = "".join(run(*command, "--help").out.split())  # lines break at hyphens
+        for name in names:
+            assert name in told, command
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell's >&-")
+def test_closed_standard_streams(process, here):
+    bend = ("deform", "shape.obj", "--points", "points.csv", "--weights", "inverse-distance", "--move", "top=0,1,0")
+    ran = process(*bend, "-o", "-", program=CLOSED.format(1, PROGRAM))
+    assert ran.code == 1
+    assert ran.err.splitlines()[-1].startswith(b"neuralmls: error: standard output: cannot write: ")
+    assert b"Traceback" not in ran.err
+    assert process(*bend, "-o", "out.obj", program=CLOSED.format(2, PROGRAM)).code == 0
+    assert (here / "out.obj").is_file()
+    assert process(*bend, "-o", "out.obj", program=CLOSED.format(2, PROGRAM)).code == 2
 
 
 def test_version(run):

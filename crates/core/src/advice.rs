@@ -4,10 +4,11 @@
 //! how the weights change). The thresholds were set on what people did to the chairs and airplanes of the paper's user study, none of
 //! which looks torn: each lies beyond what those cases reach (studies/advice_thresholds.py, docs/beyond-the-paper.md).
 
-use crate::deformer::Deformer;
+use crate::deformer::{Deformer, Pose};
 use crate::error::{check_points, Error};
 use crate::exact::{greatest, ExactHandles};
 use crate::mls::Transform;
+use crate::placement::sample_surface;
 use crate::softmax;
 
 /// Differences are over this part of the longest side, both ways, so that a band too narrow for places to lie in is seen from its sides.
@@ -92,6 +93,19 @@ impl Look {
     }
 }
 
+/// `count` places of a shape to look at (k x dim): of the surface by area, or points of the cloud `x`.
+///
+/// # Errors
+/// Where there are no finite points, or a face names none.
+pub fn places(x: &[f64], dim: usize, faces: &[[u32; 3]], count: usize) -> Result<Vec<f64>, Error> {
+    let places = sample_surface(x, dim, faces, count, 0)?;
+    if !places.is_empty() {
+        return Ok(places);
+    }
+    let every = (x.len() / dim).div_ceil(count);
+    Ok(x.chunks_exact(dim).step_by(every).flatten().copied().collect())
+}
+
 impl Probe {
     /// Where the weight function has to be asked: the places (k x dim), and those beside them; `side` is the shape's longest.
     pub fn points(places: &[f64], dim: usize, side: f64) -> Vec<f64> {
@@ -138,25 +152,31 @@ impl Probe {
         self.handles.set_transform(transform);
     }
 
-    /// What is likely bad when the control points go to `q` (m x dim), soft or exact by the adherence; nothing where everything moves as one.
+    /// What is likely bad when the control points go to the targets of `pose` (m x dim), soft or exact by the adherence; nothing where everything moves as one.
     ///
     /// # Errors
     /// As [`ExactHandles::aim`].
-    pub fn advise(&self, q: &[f64], temperature: f64, adherence: f64) -> Result<Vec<Advice>, Error> {
-        let look = self.look(q, temperature, adherence)?;
+    pub fn advise<'a>(
+        &self,
+        pose: impl Into<Pose<'a>>,
+        temperature: f64,
+        adherence: f64,
+    ) -> Result<Vec<Advice>, Error> {
+        let pose = pose.into();
+        let look = self.look(pose, temperature, adherence)?;
         if look.alike {
             return Ok(Vec::new());
         }
         let mut found = Vec::new();
         if look.folded() > FOLDED {
             let place = greatest(look.determinants.iter().map(|det| -det)).0;
-            let better = self.better(q, temperature, adherence, Look::folded, look.folded())?;
+            let better = self.better(pose, temperature, adherence, Look::folded, look.folded())?;
             let near = self.governing(place, temperature);
             found.push(Advice { kind: Kind::Folds(look.folded()), place, near, better });
         }
         if look.torn() > TORN {
             let (place, stretch) = greatest(look.stretches.iter().copied());
-            let better = self.better(q, temperature, adherence, Look::torn, look.torn())?;
+            let better = self.better(pose, temperature, adherence, Look::torn, look.torn())?;
             let near = self.governing(place, temperature);
             found.push(Advice { kind: Kind::Torn(stretch), place, near, better });
         }
@@ -168,8 +188,14 @@ impl Probe {
     ///
     /// # Errors
     /// As [`ExactHandles::aim`].
-    pub fn parts(&self, q: &[f64], temperature: f64, adherence: f64) -> Result<(f64, f64), Error> {
-        let look = self.look(q, temperature, adherence)?;
+    pub fn parts<'a>(
+        &self,
+        pose: impl Into<Pose<'a>>,
+        temperature: f64,
+        adherence: f64,
+    ) -> Result<(f64, f64), Error> {
+        let pose = pose.into();
+        let look = self.look(pose, temperature, adherence)?;
         Ok((look.folded(), look.torn()))
     }
 
@@ -177,9 +203,16 @@ impl Probe {
     ///
     /// # Errors
     /// As [`ExactHandles::aim`].
-    pub fn look(&self, q: &[f64], temperature: f64, adherence: f64) -> Result<Look, Error> {
-        let aim = self.handles.aim(q, temperature, adherence)?;
-        let mut y = self.all.deform(&aim.targets, temperature, false, &mut |_| true)?.positions;
+    pub fn look<'a>(
+        &self,
+        pose: impl Into<Pose<'a>>,
+        temperature: f64,
+        adherence: f64,
+    ) -> Result<Look, Error> {
+        let pose = pose.into();
+        let aim = self.handles.aim(pose, temperature, adherence)?;
+        let aimed = Pose { q: &aim.targets, turns: pose.turns };
+        let mut y = self.all.deform(aimed, temperature, false, &mut |_| true)?.positions;
         let (dim, beside) = (self.dim, y.split_off(self.places.len()));
         let sides: Vec<&[f64]> = beside.chunks_exact(self.places.len()).collect();
         let jacobian = |place: usize| -> [[f64; 3]; 3] {
@@ -246,7 +279,7 @@ impl Probe {
     /// Which other setting at least halves a part of the places, if one does.
     fn better(
         &self,
-        q: &[f64],
+        pose: Pose<'_>,
         temperature: f64,
         adherence: f64,
         part: impl Fn(&Look) -> f64,
@@ -260,11 +293,11 @@ impl Probe {
         };
         for other in [1.0, temperature / 2.0, temperature * 2.0] {
             if other != temperature {
-                offer(Better::Temperature(other), &self.look(q, other, adherence)?);
+                offer(Better::Temperature(other), &self.look(pose, other, adherence)?);
             }
         }
         if adherence > 0.0 {
-            offer(Better::Soft, &self.look(q, temperature, 0.0)?);
+            offer(Better::Soft, &self.look(pose, temperature, 0.0)?);
         }
         Ok(best.filter(|(_, part)| *part <= now / 2.0))
     }

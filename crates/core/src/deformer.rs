@@ -3,7 +3,7 @@
 use crate::error::{check_points, Error};
 use crate::frame::Frame;
 use crate::mls::lanes::{BatchPoints, LaneHandles, Scratch, BATCH};
-use crate::mls::{Handles, Transform};
+use crate::mls::{check_turns, turned, Handles, Transform};
 use crate::parallel::{any_block, for_each_block, for_each_block_pair};
 use crate::progress::{report, Progress};
 use crate::softmax::{check_temperature, relative_weights, PackedWeights};
@@ -34,6 +34,22 @@ pub struct Deformer {
     transform: Transform,
     /// The weights of the last frame.
     last: Mutex<Option<Arc<PackedWeights>>>,
+}
+
+/// The control points moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose<'a> {
+    /// Where they go, m x dim.
+    pub q: &'a [f64],
+    /// How they turn, m x dim x dim, row-major: of each a rotation times a scale above 0, `s_i R_i`, or NaN throughout for one that says
+    /// nothing; none where none of them does. Rigid maps leave the scale away.
+    pub turns: Option<&'a [f64]>,
+}
+
+impl<'a, Q: AsRef<[f64]> + ?Sized> From<&'a Q> for Pose<'a> {
+    fn from(q: &'a Q) -> Self {
+        Pose { q: q.as_ref(), turns: None }
+    }
 }
 
 /// The result of [`Deformer::deform`].
@@ -93,23 +109,24 @@ impl Deformer {
         self.x.is_empty()
     }
 
-    /// Where the points go when the control points go to `q` (m x dim), with the weights at `temperature` > 0; with the local maps
-    /// if `maps`. If every target is its control point, the positions are the input bit for bit.
+    /// Where the points go when the control points go to the targets of `pose` (m x dim numbers, or with turns a [`Pose`]), with
+    /// the weights at `temperature` > 0; with the local maps if `maps`. If every target is its control point, and no turn anything but the
+    /// identity, the positions are the input bit for bit.
     ///
     /// The first frame at a temperature computes the weights; the next ones find them.
     ///
     /// # Errors
-    /// [`Error::Cancelled`]; where `q` does not fit, is not finite, or the temperature is not above 0.
-    pub fn deform(
+    /// [`Error::Cancelled`]; where the pose does not fit, is not finite, a turn is none, or the temperature is not above 0.
+    pub fn deform<'a>(
         &self,
-        q: &[f64],
+        pose: impl Into<Pose<'a>>,
         temperature: f64,
         maps: bool,
         progress: &mut Progress<'_>,
     ) -> Result<Deformed, Error> {
         let mut positions = vec![0.0; self.x.len()];
         let mut matrices = maps.then(|| vec![0.0; self.x.len() * self.dim]);
-        self.deform_into(q, temperature, &mut positions, matrices.as_deref_mut(), progress)?;
+        self.deform_into(pose, temperature, &mut positions, matrices.as_deref_mut(), progress)?;
         Ok(Deformed { positions, maps: matrices })
     }
 
@@ -117,20 +134,23 @@ impl Deformer {
     ///
     /// # Errors
     /// As [`Deformer::deform`], and where `y` or `maps` have another size. What they hold then is not a result.
-    pub fn deform_into(
+    pub fn deform_into<'a>(
         &self,
-        q: &[f64],
+        pose: impl Into<Pose<'a>>,
         temperature: f64,
         y: &mut [f64],
         maps: Option<&mut [f64]>,
         progress: &mut Progress<'_>,
     ) -> Result<(), Error> {
+        let pose = pose.into();
+        let q = pose.q;
         check_points("q", q, self.dim)?;
         check_temperature(temperature)?;
         if q.len() != self.p.len() {
             let (found, expected) = (q.len() / self.dim, self.p.len() / self.dim);
             return Err(Error::argument("q", format!("expected {expected} targets, found {found}")));
         }
+        let still = pose.turns.map_or(Ok(true), |turns| check_turns(turns, q.len() / self.dim, self.dim))?;
         let room = |name, found: usize, expected: usize| {
             let message = || format!("expected room for {expected} numbers, found {found}");
             if found == expected {
@@ -143,12 +163,12 @@ impl Deformer {
         if let Some(maps) = &maps {
             room("maps", maps.len(), self.x.len() * self.dim)?;
         }
-        let unmoved = q == self.p;
+        let unmoved = still && q == self.p;
         if !unmoved || maps.is_some() {
             match self.dim {
-                1 => self.deform_in::<1>(q, temperature, y, maps, progress)?,
-                2 => self.deform_in::<2>(q, temperature, y, maps, progress)?,
-                _ => self.deform_in::<3>(q, temperature, y, maps, progress)?,
+                1 => self.deform_in::<1>(pose, temperature, y, maps, progress)?,
+                2 => self.deform_in::<2>(pose, temperature, y, maps, progress)?,
+                _ => self.deform_in::<3>(pose, temperature, y, maps, progress)?,
             }
         }
         if unmoved {
@@ -159,7 +179,7 @@ impl Deformer {
 
     fn deform_in<const D: usize>(
         &self,
-        q: &[f64],
+        pose: Pose<'_>,
         temperature: f64,
         y: &mut [f64],
         maps: Option<&mut [f64]>,
@@ -168,8 +188,9 @@ impl Deformer {
         let enter = |points: &[f64]| -> Vec<[f64; D]> {
             points.chunks_exact(D).map(|point| self.frame.enter(point)).collect()
         };
-        let (p, q) = (enter(&self.p), enter(q));
-        let handles = Handles::new(&p, &q, self.transform);
+        let (p, q) = (enter(&self.p), enter(pose.q));
+        let turned = pose.turns.map_or_else(Vec::new, |turns| turned(turns, &p));
+        let handles = Handles::with_turned(&p, &q, turned, self.transform);
         let lanes = handles.lanes(self.frame).map(|lanes| (lanes, self.weights(temperature)));
         let motion =
             Motion { x: &self.x, logits: &self.logits, frame: self.frame, temperature, handles, lanes };

@@ -10,7 +10,7 @@
 //! by `q' <- q' + (q - f(p; q'))`, with Anderson's acceleration (Anderson 1965; Walker, Ni 2011). The unknowns are the targets alone, so
 //! it costs a few frames of as many points as there are control points. [`ExactHandles::aim_carefully`] does so only where it is worth it.
 
-use crate::deformer::Deformer;
+use crate::deformer::{Deformer, Pose};
 use crate::error::Error;
 use crate::mls::Transform;
 use crate::softmax;
@@ -85,23 +85,29 @@ impl ExactHandles {
         self.handles.logits()
     }
 
-    /// Where the control points go when they are pulled to `targets` (m x dim): near them.
+    /// Where the control points go when they are pulled to the targets of `pose` (m x dim): near them.
     ///
     /// # Errors
     /// As [`Deformer::deform`].
-    pub fn land(&self, targets: &[f64], temperature: f64) -> Result<Vec<f64>, Error> {
-        Ok(self.handles.deform(targets, temperature, false, &mut |_| true)?.positions)
+    pub fn land<'a>(&self, pose: impl Into<Pose<'a>>, temperature: f64) -> Result<Vec<f64>, Error> {
+        Ok(self.handles.deform(pose, temperature, false, &mut |_| true)?.positions)
     }
 
-    /// [`ExactHandles::aim`] where it is worth it: the targets `q` themselves, and why, where a control point has too little of the
+    /// [`ExactHandles::aim`] where it is worth it: the targets themselves, and why, where a control point has too little of the
     /// weight at its own place, or would not arrive.
     ///
     /// # Errors
     /// As [`ExactHandles::aim`].
-    pub fn aim_carefully(&self, q: &[f64], temperature: f64, adherence: f64) -> Result<Aim, Error> {
-        let mut soft = self.aim(q, temperature, 0.0)?;
-        soft.misses = distances(&self.land(q, temperature)?, q, self.dim);
-        let reached = REACHED * self.extent(q);
+    pub fn aim_carefully<'a>(
+        &self,
+        pose: impl Into<Pose<'a>>,
+        temperature: f64,
+        adherence: f64,
+    ) -> Result<Aim, Error> {
+        let pose = pose.into();
+        let mut soft = self.aim(pose, temperature, 0.0)?;
+        soft.misses = distances(&self.land(pose, temperature)?, pose.q, self.dim);
+        let reached = REACHED * self.extent(pose.q);
         let (_, miss) = greatest(soft.misses.iter().copied());
         if adherence == 0.0 || miss <= reached {
             return Ok(soft);
@@ -116,7 +122,7 @@ impl ExactHandles {
             soft.soft = Some(Soft::Shared(least, 1.0 - lost));
             return Ok(soft);
         }
-        let aim = self.aim(q, temperature, adherence)?;
+        let aim = self.aim(pose, temperature, adherence)?;
         let (worst, miss) = greatest(aim.misses.iter().copied());
         if miss > reached {
             soft.soft = Some(Soft::Unreached(worst, miss));
@@ -129,9 +135,15 @@ impl ExactHandles {
     ///
     /// # Errors
     /// As [`ExactHandles::aim`].
-    pub fn remedy(&self, q: &[f64], temperature: f64, adherence: f64) -> Result<Option<Remedy>, Error> {
+    pub fn remedy<'a>(
+        &self,
+        pose: impl Into<Pose<'a>>,
+        temperature: f64,
+        adherence: f64,
+    ) -> Result<Option<Remedy>, Error> {
+        let pose = pose.into();
         let arrives = |handles: &ExactHandles, temperature: f64| -> Result<bool, Error> {
-            Ok(handles.aim_carefully(q, temperature, adherence)?.soft.is_none())
+            Ok(handles.aim_carefully(pose, temperature, adherence)?.soft.is_none())
         };
         if arrives(self, temperature / 2.0)? {
             return Ok(Some(Remedy::Temperature(temperature / 2.0)));
@@ -140,18 +152,20 @@ impl ExactHandles {
         Ok(arrives(&affine, temperature)?.then_some(Remedy::Affine))
     }
 
-    /// The effective targets for the targets `q` (m x dim), at `temperature` > 0.
+    /// The effective targets for the targets of `pose` (m x dim), at `temperature` > 0; its turns are taken as they are.
     ///
     /// With `adherence` 1 the control points go to their targets; with 0 to where MLS takes them, and the effective targets are the
     /// targets; between, to that part of the way from the one to the other. Where that cannot be reached, the nearest that was found.
     ///
     /// # Errors
     /// As [`Deformer::deform`]; where the adherence is not from 0 to 1.
-    pub fn aim(&self, q: &[f64], temperature: f64, adherence: f64) -> Result<Aim, Error> {
+    pub fn aim<'a>(&self, pose: impl Into<Pose<'a>>, temperature: f64, adherence: f64) -> Result<Aim, Error> {
+        let Pose { q, turns } = pose.into();
         if !(0.0..=1.0).contains(&adherence) {
             return Err(Error::argument("adherence", format!("expected 0 to 1, found {adherence}")));
         }
-        let soft = self.land(q, temperature)?;
+        let arrive = |targets: &[f64]| self.land(Pose { q: targets, turns }, temperature);
+        let soft = arrive(q)?;
         let goal: Vec<f64> = soft.iter().zip(q).map(|(soft, q)| soft + adherence * (q - soft)).collect();
         let rest = |arrived: Vec<f64>| -> Vec<f64> { goal.iter().zip(arrived).map(|(g, a)| g - a).collect() };
         let enough = ARRIVED * self.extent(q);
@@ -167,7 +181,7 @@ impl ExactHandles {
             let step = history.step(&now.rest);
             let step = step.iter().map(|s| s * 0.5f64.powi(halvings));
             let targets: Vec<f64> = now.targets.iter().zip(step).map(|(t, s)| t + s).collect();
-            let next = Guess { rest: rest(self.land(&targets, temperature)?), targets };
+            let next = Guess { rest: rest(arrive(&targets)?), targets };
             if next.square() < best.square() {
                 halvings = 0;
                 history.push(&now, &next);

@@ -35,7 +35,7 @@ mod simd;
 pub mod softmax;
 pub mod tree;
 
-pub use deformer::{Deformed, Deformer};
+pub use deformer::{Deformed, Deformer, Pose};
 pub use error::Error;
 pub use exact::{Aim, ExactHandles, Remedy, Soft};
 pub use frame::Frame;

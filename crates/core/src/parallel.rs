@@ -28,12 +28,12 @@ pub(crate) fn for_each_block<T: Send>(
     size: usize,
     work: impl Fn(usize, &mut [T]) + Sync + Send,
 ) {
+    // One block is done sooner than another thread has begun.
     #[cfg(feature = "threads")]
-    {
+    if out.len() > size {
         use rayon::prelude::*;
-        out.par_chunks_mut(size).enumerate().for_each(|(index, block)| work(index, block));
+        return out.par_chunks_mut(size).enumerate().for_each(|(index, block)| work(index, block));
     }
-    #[cfg(not(feature = "threads"))]
     out.chunks_mut(size).enumerate().for_each(|(index, block)| work(index, block));
 }
 

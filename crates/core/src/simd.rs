@@ -62,6 +62,19 @@ impl Simd {
 /// Defines `fn name(simd: Simd, arguments...)`, which calls the kernel `body::<L: Lanes>(arguments...)` compiled for `simd`.
 macro_rules! multiversion {
     ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $body:ident) => {
+        $crate::simd::compiled! {
+            $(#[$meta])* $vis fn $name($($arg: $type),*) $(-> $result)? = $body
+            [$crate::simd::Portable] [$crate::simd::Avx2] [$crate::simd::Avx512]
+        }
+    };
+}
+pub(crate) use multiversion;
+
+/// What [`multiversion!`] and [`loops::multiversion_loops!`] share: the kernel `body::<...>(arguments...)`, compiled with the parameter
+/// that is given for each instruction set.
+macro_rules! compiled {
+    ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),*) $(-> $result:ty)? = $body:ident
+        [$($portable:tt)*] [$($avx2:tt)*] [$($avx512:tt)*]) => {
         $(#[$meta])*
         #[allow(clippy::too_many_arguments)]
         $vis fn $name(simd: $crate::simd::Simd, $($arg: $type),*) $(-> $result)? {
@@ -70,12 +83,12 @@ macro_rules! multiversion {
                 #[target_feature(enable = "avx2,fma")]
                 #[allow(clippy::too_many_arguments)]
                 fn avx2($($arg: $type),*) $(-> $result)? {
-                    $body::<$crate::simd::Avx2>($($arg),*)
+                    $body::<$($avx2)*>($($arg),*)
                 }
                 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma")]
                 #[allow(clippy::too_many_arguments)]
                 fn avx512($($arg: $type),*) $(-> $result)? {
-                    $body::<$crate::simd::Avx512>($($arg),*)
+                    $body::<$($avx512)*>($($arg),*)
                 }
                 match simd {
                     // SAFETY: `Simd` names an instruction set only where it was detected.
@@ -87,11 +100,11 @@ macro_rules! multiversion {
             }
             #[cfg(not(target_arch = "x86_64"))]
             let _ = simd;
-            $body::<$crate::simd::Portable>($($arg),*)
+            $body::<$($portable)*>($($arg),*)
         }
     };
 }
-pub(crate) use multiversion;
+pub(crate) use compiled;
 
 #[cfg(test)]
 mod tests {

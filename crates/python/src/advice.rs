@@ -1,7 +1,8 @@
 //! What is likely bad about a deformation.
 
 use neuralmls_core::advice::{Better, Kind};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use neuralmls_core::Pose;
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::deformer::transform;
@@ -58,11 +59,13 @@ impl Probe {
         &self,
         py: Python<'_>,
         q: PyReadonlyArray2<'_, f64>,
+        turns: Option<PyReadonlyArray3<'_, f64>>,
         temperature: f64,
         adherence: f64,
     ) -> PyResult<Vec<Advice>> {
-        let q = q.as_slice()?;
-        let found = py.detach(|| self.probe.advise(q, temperature, adherence));
+        let turns = turns.as_ref().map(|turns| turns.as_slice()).transpose()?;
+        let pose = Pose { q: q.as_slice()?, turns };
+        let found = py.detach(|| self.probe.advise(pose, temperature, adherence));
         let named = |advice: neuralmls_core::advice::Advice| {
             let (kind, amount) = match advice.kind {
                 Kind::Folds(part) => ("folds", part),
@@ -83,22 +86,26 @@ impl Probe {
         &self,
         py: Python<'_>,
         q: PyReadonlyArray2<'_, f64>,
+        turns: Option<PyReadonlyArray3<'_, f64>>,
         temperature: f64,
         adherence: f64,
     ) -> PyResult<(f64, f64)> {
-        let q = q.as_slice()?;
-        py.detach(|| self.probe.parts(q, temperature, adherence)).map_err(|error| from_core(error, None))
+        let turns = turns.as_ref().map(|turns| turns.as_slice()).transpose()?;
+        let pose = Pose { q: q.as_slice()?, turns };
+        py.detach(|| self.probe.parts(pose, temperature, adherence)).map_err(|error| from_core(error, None))
     }
 
     fn look<'py>(
         &self,
         py: Python<'py>,
         q: PyReadonlyArray2<'py, f64>,
+        turns: Option<PyReadonlyArray3<'py, f64>>,
         temperature: f64,
         adherence: f64,
     ) -> PyResult<Look<'py>> {
-        let q = q.as_slice()?;
-        let look = py.detach(|| self.probe.look(q, temperature, adherence));
+        let turns = turns.as_ref().map(|turns| turns.as_slice()).transpose()?;
+        let pose = Pose { q: q.as_slice()?, turns };
+        let look = py.detach(|| self.probe.look(pose, temperature, adherence));
         let look = look.map_err(|error| from_core(error, None))?;
         let count = look.determinants.len();
         Ok((

@@ -1,8 +1,8 @@
 //! Points bound to their logits.
 
 use neuralmls_core::memory::copy_of;
-use neuralmls_core::Transform;
-use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use neuralmls_core::{Pose, Transform};
+use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::errors::{argument, from_core};
@@ -50,18 +50,21 @@ impl Deformer {
     }
 
     /// Writes the positions into `out`, n x d, or into a new array.
-    #[pyo3(signature = (q, temperature, maps, out, progress))]
+    #[pyo3(signature = (q, turns, temperature, maps, out, progress))]
+    #[allow(clippy::too_many_arguments)]
     fn deform<'py>(
         &self,
         py: Python<'py>,
         q: PyReadonlyArray2<'py, f64>,
+        turns: Option<PyReadonlyArray3<'py, f64>>,
         temperature: f64,
         maps: bool,
         out: Option<Bound<'py, PyArray2<f64>>>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Deformed<'py>> {
         let (n, d) = (self.inner.len(), self.dim);
-        let targets = q.as_slice()?;
+        let turns = turns.as_ref().map(|turns| turns.as_slice()).transpose()?;
+        let pose = Pose { q: q.as_slice()?, turns };
         let positions = out.unwrap_or_else(|| PyArray2::zeros(py, [n, d], false));
         let maps = maps.then(|| PyArray3::zeros(py, [n, d, d], false));
         {
@@ -70,7 +73,7 @@ impl Deformer {
             let y = y.as_slice_mut()?;
             let mut m = maps.as_ref().map(|maps| maps.try_readwrite()).transpose()?;
             let m = m.as_mut().map(|maps| maps.as_slice_mut()).transpose()?;
-            run(py, progress, |report| self.inner.deform_into(targets, temperature, y, m, report))?;
+            run(py, progress, |report| self.inner.deform_into(pose, temperature, y, m, report))?;
         }
         Ok((positions, maps))
     }

@@ -1,7 +1,7 @@
 //! Handles that arrive.
 
-use neuralmls_core::{Error, Remedy, Soft};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use neuralmls_core::{Error, Pose, Remedy, Soft};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::deformer::transform;
@@ -33,20 +33,22 @@ impl ExactHandles {
         &self,
         py: Python<'py>,
         q: PyReadonlyArray2<'py, f64>,
+        turns: Option<PyReadonlyArray3<'py, f64>>,
         temperature: f64,
         adherence: f64,
     ) -> PyResult<Aim<'py>> {
-        given(py, q, |q| self.0.aim(q, temperature, adherence))
+        given(py, q, turns, |pose| self.0.aim(pose, temperature, adherence))
     }
 
     fn aim_carefully<'py>(
         &self,
         py: Python<'py>,
         q: PyReadonlyArray2<'py, f64>,
+        turns: Option<PyReadonlyArray3<'py, f64>>,
         temperature: f64,
         adherence: f64,
     ) -> PyResult<Aim<'py>> {
-        given(py, q, |q| self.0.aim_carefully(q, temperature, adherence))
+        given(py, q, turns, |pose| self.0.aim_carefully(pose, temperature, adherence))
     }
 
     /// A temperature, or none for the affine transform; none at all where neither helps.
@@ -54,12 +56,15 @@ impl ExactHandles {
         &self,
         py: Python<'_>,
         q: PyReadonlyArray2<'_, f64>,
+        turns: Option<PyReadonlyArray3<'_, f64>>,
         temperature: f64,
         adherence: f64,
     ) -> PyResult<Option<(&'static str, Option<f64>)>> {
-        let q = q.as_slice()?;
-        let remedy =
-            py.detach(|| self.0.remedy(q, temperature, adherence)).map_err(|error| from_core(error, None))?;
+        let turns = turns.as_ref().map(|turns| turns.as_slice()).transpose()?;
+        let pose = Pose { q: q.as_slice()?, turns };
+        let remedy = py
+            .detach(|| self.0.remedy(pose, temperature, adherence))
+            .map_err(|error| from_core(error, None))?;
         Ok(remedy.map(|remedy| match remedy {
             Remedy::Temperature(other) => ("temperature", Some(other)),
             Remedy::Affine => ("affine", None),
@@ -71,10 +76,12 @@ impl ExactHandles {
 fn given<'py>(
     py: Python<'py>,
     q: PyReadonlyArray2<'py, f64>,
-    aimed: impl FnOnce(&[f64]) -> Result<neuralmls_core::Aim, Error> + Send,
+    turns: Option<PyReadonlyArray3<'py, f64>>,
+    aimed: impl FnOnce(Pose<'_>) -> Result<neuralmls_core::Aim, Error> + Send,
 ) -> PyResult<Aim<'py>> {
-    let (shape, q) = ([q.shape()[0], q.shape()[1]], q.as_slice()?);
-    let aim = py.detach(|| aimed(q)).map_err(|error| from_core(error, None))?;
+    let turns = turns.as_ref().map(|turns| turns.as_slice()).transpose()?;
+    let (shape, pose) = ([q.shape()[0], q.shape()[1]], Pose { q: q.as_slice()?, turns });
+    let aim = py.detach(|| aimed(pose)).map_err(|error| from_core(error, None))?;
     let soft = aim.soft.map(|soft| match soft {
         Soft::Shared(control_point, owned) => ("shared", control_point, owned),
         Soft::Unreached(control_point, miss) => ("unreached", control_point, miss),

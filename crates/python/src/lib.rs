@@ -6,6 +6,7 @@ mod advice;
 mod deformer;
 mod errors;
 mod exact;
+mod placement;
 mod progress;
 mod shape_file;
 mod weights;
@@ -20,6 +21,8 @@ mod _core {
     use crate::deformer::Deformer;
     #[pymodule_export]
     use crate::exact::ExactHandles;
+    #[pymodule_export]
+    use crate::placement::{farthest_of, farthest_points, sample_surface};
     #[pymodule_export]
     use crate::shape_file::ShapeFile;
     #[pymodule_export]

@@ -71,6 +71,11 @@ impl ShapeFile {
         self.0.named_files()
     }
 
+    /// The side files that a moved shape may be written with, called after `stem`.
+    fn side_files(&self, stem: &str) -> Vec<String> {
+        self.0.side_files(stem)
+    }
+
     /// The same file with other positions, its changed side files called after `stem`.
     #[pyo3(signature = (positions, maps, stem))]
     fn write<'py>(

@@ -40,6 +40,11 @@ pub(crate) trait Document: Send + Sync {
         Vec::new()
     }
 
+    /// The side files that [`Document::write`] may write for a shape that moves, as they are called after `stem`.
+    fn side_files(&self, _stem: &str) -> Vec<String> {
+        Vec::new()
+    }
+
     /// The file with the positions of `moved`. `source` is the file's bytes as they were read. Not called for a shape that did
     /// not move: that one's bytes are returned as they are.
     fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error>;

@@ -132,6 +132,12 @@ impl Shape {
         self.document.named_files()
     }
 
+    /// The side files that [`Shape::write_as`] may write for other positions, as it calls them after `stem`: those of a shape that
+    /// moves as a whole. One of which only some vertices move may need fewer.
+    pub fn side_files(&self, stem: &str) -> Vec<String> {
+        self.document.side_files(stem)
+    }
+
     /// The same file with other positions, its side files under their own names.
     ///
     /// # Errors

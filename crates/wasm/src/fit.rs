@@ -3,7 +3,7 @@
 use js_sys::{Array, Float32Array, Float64Array};
 use neuralmls_core::advice::{Better, Kind, Probe};
 use neuralmls_core::progress::Progress;
-use neuralmls_core::{Deformer, Error, Frame, InverseDistance, PointTree, Transform};
+use neuralmls_core::{Deformer, Error, Frame, InverseDistance, PointTree, Pose, Transform};
 use wasm_bindgen::prelude::*;
 
 use crate::handles::{named, Handles};
@@ -93,6 +93,21 @@ impl Fit {
         Float32Array::from(self.control_points.logits())
     }
 
+    /// [`Handles::aim`] of the control points: what to give to [`Fit::deform`] for the targets `q`.
+    ///
+    /// # Errors
+    /// Where `q` does not fit, or a number is out of its range.
+    pub fn aim(
+        &mut self,
+        q: &[f64],
+        turns: Option<Vec<f64>>,
+        transform: &str,
+        temperature: f64,
+        adherence: f64,
+    ) -> Result<Float64Array, JsError> {
+        self.control_points.aim(q, turns, transform, temperature, adherence)
+    }
+
     /// [`Handles::land`] of the control points.
     ///
     /// # Errors
@@ -100,11 +115,12 @@ impl Fit {
     pub fn land(
         &mut self,
         q: &[f64],
+        turns: Option<Vec<f64>>,
         transform: &str,
         temperature: f64,
         adherence: f64,
     ) -> Result<Array, JsError> {
-        self.control_points.land(q, transform, temperature, adherence)
+        self.control_points.land(q, turns, transform, temperature, adherence)
     }
 
     /// What is likely bad about the shape when the control points are pulled to `q`, looked at in `places` (k x dim, always the same): for each
@@ -117,11 +133,13 @@ impl Fit {
         &mut self,
         places: &[f64],
         q: &[f64],
+        turns: Option<Vec<f64>>,
         transform: &str,
         temperature: f64,
         adherence: f64,
     ) -> Result<Array, JsError> {
-        let used = match self.control_points.aimed(q, transform, temperature, adherence)?.soft {
+        let pose = Pose { q, turns: turns.as_deref() };
+        let used = match self.control_points.aimed(pose, transform, temperature, adherence)?.soft {
             None => adherence,
             Some(_) => 0.0,
         };
@@ -136,7 +154,7 @@ impl Fit {
         let result = Array::new();
         if let Some(probe) = &mut self.probe {
             probe.set_transform(named(transform)?);
-            for advice in probe.advise(q, temperature, used).map_err(refused)? {
+            for advice in probe.advise(pose, temperature, used).map_err(refused)? {
                 let (kind, amount) = match advice.kind {
                     Kind::Folds(part) => ("folds", part),
                     Kind::Torn(stretch) => ("torn", stretch),
@@ -163,18 +181,16 @@ impl Fit {
     pub fn deform(
         &mut self,
         q: &[f64],
+        turns: Option<Vec<f64>>,
         transform: &str,
         temperature: f64,
-        adherence: f64,
         maps: bool,
         tell: &js_sys::Function,
     ) -> Result<Array, JsError> {
-        let aim = self.control_points.aimed(q, transform, temperature, adherence)?;
         self.points.set_transform(named(transform)?);
-        let deformed = self
-            .points
-            .deform(&aim.targets, temperature, maps, &mut crate::reporter(tell))
-            .map_err(refused)?;
+        let pose = Pose { q, turns: turns.as_deref() };
+        let deformed =
+            self.points.deform(pose, temperature, maps, &mut crate::reporter(tell)).map_err(refused)?;
         let result = Array::of1(&Float64Array::from(&deformed.positions[..]));
         if let Some(maps) = deformed.maps {
             result.push(&Float64Array::from(&maps[..]));

@@ -1,7 +1,7 @@
 //! Control points that arrive. The main thread has one of these for each frame of a drag; workers have it in their fit.
 
 use js_sys::{Array, Float64Array};
-use neuralmls_core::{Aim, Error, ExactHandles, Remedy, Soft, Transform};
+use neuralmls_core::{Aim, Error, ExactHandles, Pose, Remedy, Soft, Transform};
 use wasm_bindgen::prelude::*;
 
 use crate::refused;
@@ -21,18 +21,20 @@ impl Handles {
         Handles::of(p, dim, own_logits).map_err(refused)
     }
 
-    /// Where to aim for the targets `q` (m x dim): `q` itself where the control points are left soft.
+    /// Where to aim for the targets `q` (m x dim), turned by `turns` (m x dim x dim, NaN for those that are not; undefined: none is): `q` itself where the control points are left soft.
     ///
     /// # Errors
     /// Where `q` does not fit, or a number is out of its range.
     pub fn aim(
         &mut self,
         q: &[f64],
+        turns: Option<Vec<f64>>,
         transform: &str,
         temperature: f64,
         adherence: f64,
     ) -> Result<Float64Array, JsError> {
-        Ok(Float64Array::from(&self.aimed(q, transform, temperature, adherence)?.targets[..]))
+        let pose = Pose { q, turns: turns.as_deref() };
+        Ok(Float64Array::from(&self.aimed(pose, transform, temperature, adherence)?.targets[..]))
     }
 
     /// Where the control points land when they are pulled to `q` (m x dim); then, where they are left soft in spite of the adherence:
@@ -43,19 +45,21 @@ impl Handles {
     pub fn land(
         &mut self,
         q: &[f64],
+        turns: Option<Vec<f64>>,
         transform: &str,
         temperature: f64,
         adherence: f64,
     ) -> Result<Array, JsError> {
-        let Aim { targets, soft, .. } = self.aimed(q, transform, temperature, adherence)?;
-        let landed = self.0.land(&targets, temperature).map_err(refused)?;
+        let pose = Pose { q, turns: turns.as_deref() };
+        let Aim { targets, soft, .. } = self.aimed(pose, transform, temperature, adherence)?;
+        let landed = self.0.land(Pose { q: &targets, ..pose }, temperature).map_err(refused)?;
         let result = Array::of1(&Float64Array::from(&landed[..]));
         if let Some(soft) = soft {
             let (reason, control_point, amount) = match soft {
                 Soft::Shared(control_point, owned) => ("shared", control_point, owned),
                 Soft::Unreached(control_point, miss) => ("unreached", control_point, miss),
             };
-            let remedy = match self.0.remedy(q, temperature, adherence).map_err(refused)? {
+            let remedy = match self.0.remedy(pose, temperature, adherence).map_err(refused)? {
                 Some(Remedy::Temperature(other)) => JsValue::from_f64(other),
                 Some(Remedy::Affine) => JsValue::from_str("affine"),
                 None => JsValue::NULL,
@@ -80,13 +84,13 @@ impl Handles {
 
     pub(crate) fn aimed(
         &mut self,
-        q: &[f64],
+        pose: Pose<'_>,
         transform: &str,
         temperature: f64,
         adherence: f64,
     ) -> Result<Aim, JsError> {
         self.0.set_transform(named(transform)?);
-        self.0.aim_carefully(q, temperature, adherence).map_err(refused)
+        self.0.aim_carefully(pose, temperature, adherence).map_err(refused)
     }
 }
 

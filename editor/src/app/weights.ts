@@ -2,6 +2,7 @@
 
 import type { History } from "../commands/index.ts";
 import { pointAt, type Vec3, distance, flatten } from "../model/vec3.ts";
+import { turnsOf } from "../model/turn.ts";
 import type { PointId, Session } from "../model/session.ts";
 import { type Settings, weightsKey } from "../model/settings.ts";
 import type { Handles } from "../model/handles.ts";
@@ -82,10 +83,11 @@ export class Weights {
   motion(session: Session): Motion | null {
     const bound = this.#bound.main;
     if (!bound) return null;
-    const byId = new Map(session.points.map((point) => [point.id, point.target]));
-    const targets = bound.ids.map((id, i): Vec3 => byId.get(id) ?? pointAt(bound.p, i));
+    const byId = new Map(session.points.map((point) => [point.id, point]));
+    const targets = bound.ids.map((id, i): Vec3 => byId.get(id)?.target ?? pointAt(bound.p, i));
+    const turned = bound.ids.map((id) => byId.get(id)?.turn);
     const { transform, temperature, adherence } = session.settings;
-    return { targets: flatten(targets), transform, temperature, adherence };
+    return { targets: flatten(targets), ...turnsOf(turned), transform, temperature, adherence };
   }
 
   /** Resolves when the weights belong to the session as it is. */

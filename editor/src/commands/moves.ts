@@ -2,6 +2,7 @@
 
 import { mirrorVector, twinOf } from "../model/mirror.ts";
 import { type ControlPoint, find, type Moves, type PointId, type Session } from "../model/session.ts";
+import { mirrorTurn, type Quaternion, sameTurn, type Turn, turnedBy } from "../model/turn.ts";
 import { add, equal, subtract, type Vec3 } from "../model/vec3.ts";
 import type { Command } from "./history.ts";
 import { change } from "./points.ts";
@@ -9,14 +10,7 @@ import { change } from "./points.ts";
 /** Moves the selected control points to where `to` takes their targets (or places). Twins follow, locked ones stay. */
 export function moveSelected(session: Session, moves: Moves, to: (place: Vec3) => Vec3): Session {
   const axis = session.settings.mirror;
-  // A twin of the leader follows it even if it is selected too.
-  const followers = new Set<PointId>();
-  const led = [...session.selection].reverse().filter((id) => {
-    if (followers.has(id)) return false;
-    const twin = axis === null ? undefined : twinOf(session, id);
-    if (twin !== undefined) followers.add(twin);
-    return true;
-  });
+  const led = leading(session);
   let next = change(session, led, (point) => movedTo(point, moves, to(point[moves])));
   if (axis === null) return next;
   for (const id of led) {
@@ -32,6 +26,40 @@ export function moveSelected(session: Session, moves: Moves, to: (place: Vec3) =
     });
   }
   return next;
+}
+
+/** The selected control points but for twins of others that are: a twin of the leader follows it even if it is selected too. */
+function leading(session: Session): PointId[] {
+  const followers = new Set<PointId>();
+  return [...session.selection].reverse().filter((id) => {
+    if (followers.has(id)) return false;
+    const twin = session.settings.mirror === null ? undefined : twinOf(session, id);
+    if (twin !== undefined) followers.add(twin);
+    return true;
+  });
+}
+
+/**
+ * Turns the selected control point, or those of several that are turned already: the others of several turn by where they go.
+ * Twins follow, locked ones stay.
+ */
+export function turnSelected(session: Session, by: Quaternion): Session {
+  const axis = session.settings.mirror;
+  const alone = session.selection.length === 1;
+  let next = session;
+  for (const id of leading(session)) {
+    const before = find(session, id);
+    if (!before || before.locked || !(alone || before.turn)) continue;
+    const turn = turnedBy(before.turn, by);
+    next = change(next, [id], (point) => turnedTo(point, turn));
+    const twin = axis === null ? undefined : twinOf(session, id);
+    if (axis !== null && twin !== undefined) next = change(next, [twin], (point) => turnedTo(point, mirrorTurn(turn, axis)));
+  }
+  return next;
+}
+
+function turnedTo(point: ControlPoint, turn: Turn): ControlPoint {
+  return point.locked || sameTurn(point.turn, turn) ? point : { ...point, turn };
 }
 
 function movedTo(point: ControlPoint, moves: Moves, place: Vec3): ControlPoint {
@@ -65,13 +93,16 @@ export function put(id: PointId, moves: Moves, place: Vec3): Command {
   };
 }
 
-/** Takes control points back to their places at rest: the selected ones, or all. Locked ones stay where they are. */
+/** Takes control points back to their places at rest, and unturned: the selected ones, or all. Locked ones stay where they are. */
 export function resetTargets(which: "selected" | "all"): Command {
   return {
     label: "Reset",
     apply(session) {
       const ids = which === "all" ? session.points.map((point) => point.id) : session.selection;
-      return change(session, ids, (point) => movedTo(point, "target", point.position));
+      return change(session, ids, (point) => {
+        const { turn, ...unturned } = point;
+        return movedTo(turn && !point.locked ? unturned : point, "target", point.position);
+      });
     },
   };
 }

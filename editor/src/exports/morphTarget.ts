@@ -1,6 +1,6 @@
 /** A GLB of the shape at rest, with the deformed one as a morph target. */
 
-import { BufferAttribute, BufferGeometry, Mesh, Points, Scene } from "three";
+import { BufferAttribute, BufferGeometry, Mesh, Points, PointsMaterial, Scene } from "three";
 import { GLTFExporter } from "three/addons/exporters/GLTFExporter.js";
 import type { Drawn } from "../viewport/shapeView.ts";
 
@@ -34,7 +34,8 @@ export async function morphTarget(drawn: Drawn, box: Box, y: Float64Array): Prom
   geometry.morphAttributes.position = [target];
   geometry.morphTargetsRelative = true;
   const material = drawn.groups.length > 0 ? drawn.materials : drawn.materials[0];
-  const node = drawn.index ? new Mesh(geometry, material) : new Points(geometry, material);
+  const ofPoints = (): PointsMaterial => new PointsMaterial({ vertexColors: drawn.colours !== undefined });
+  const node = drawn.index ? new Mesh(geometry, material) : new Points(geometry, ofPoints());
   node.updateMorphTargets();
   const made = await new GLTFExporter().parseAsync(new Scene().add(node), { binary: true });
   return new Uint8Array(made as ArrayBuffer);

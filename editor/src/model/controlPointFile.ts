@@ -8,6 +8,7 @@ import { parseCsv } from "./controlPointCsv.ts";
 import { FileError, type RawEntry } from "./fileError.ts";
 import type { ControlPoint, Pair, Session } from "./session.ts";
 import { asRecord, settingsFrom } from "./settings.ts";
+import type { Turn } from "./turn.ts";
 import { distance, type Vec3 } from "./vec3.ts";
 
 const FORMAT = "neuralmls-control-points";
@@ -16,8 +17,9 @@ const VERSION = 1;
 /** The text of a session file. `dim`: as many coordinates a point are written as the shape's file has. */
 export function formatSession(session: Session, dim: 1 | 2 | 3): string {
   const nameOf = new Map(session.points.map((point) => [point.id, point.name]));
-  const lines = session.points.map(({ name, position, target, locked }) => {
-    const entry = { name, position: position.slice(0, dim), target: target.slice(0, dim), ...(locked && { locked }) };
+  const lines = session.points.map(({ name, position, target, turn, locked }) => {
+    const places = { position: position.slice(0, dim), target: target.slice(0, dim) };
+    const entry = { name, ...places, ...(turn && turnKeys(turn, dim)), ...(locked && { locked }) };
     return "    " + JSON.stringify(entry);
   });
   const editor = {
@@ -43,11 +45,12 @@ export function parseSession(text: string, dim: 1 | 2 | 3): Session {
   const entries = document ? document.entries : parseCsv(body);
   check(entries, dim);
   const points = entries.map(
-    ({ name, position, target, locked }, i): ControlPoint => ({
+    ({ name, position, target, turn, locked }, i): ControlPoint => ({
       id: i + 1,
       name,
       position: pad(position),
       target: pad(target),
+      ...(turn && { turn }),
       locked: locked ?? false,
     }),
   );
@@ -74,13 +77,40 @@ function parseDocument(text: string): { entries: RawEntry[]; editor: unknown } {
 
 function entryFrom(found: unknown, i: number): RawEntry {
   const where = `control_points[${i}]`;
-  const { name, position, target, locked } = asRecord(found);
+  const { name, position, target, rotation, scale, locked } = asRecord(found);
   if (typeof name !== "string" || name.trim() === "") {
     throw new FileError(`${where}.name: expected a text that is not empty, found ${shown(name)}`);
   }
   const at = coordinates(position, `${where}.position`);
   const moved = "target" in asRecord(found) ? coordinates(target, `${where}.target`, at.length) : at;
-  return { name, position: at, target: moved, locked: locked === true };
+  const turn = rotation === undefined && scale === undefined ? undefined : turnFrom(rotation, scale, where, at.length);
+  return { name, position: at, target: moved, ...(turn && { turn }), locked: locked === true };
+}
+
+function turnFrom(rotation: unknown, scale: unknown, where: string, dim: number): Turn {
+  let [axis, degrees] = [[0, 0, 1], 0];
+  if (rotation !== undefined) {
+    if (dim === 1) throw new FileError(`${where}.rotation: a control point on a line has none`);
+    const found = asRecord(rotation);
+    if (dim === 3) axis = coordinates(found.axis, `${where}.rotation.axis`, 3);
+    if (axis.every((c) => c === 0)) throw new FileError(`${where}.rotation.axis: expected numbers that are not all 0`);
+    degrees = number(found.degrees, `${where}.rotation.degrees`);
+  }
+  const larger = scale === undefined ? 1 : number(scale, `${where}.scale`);
+  if (larger <= 0) throw new FileError(`${where}.scale: expected a number above 0, found ${shown(scale)}`);
+  return { axis: pad(axis), degrees, scale: larger };
+}
+
+function turnKeys({ axis, degrees, scale }: Turn, dim: number): object {
+  return {
+    ...(dim > 1 && { rotation: { ...(dim === 3 && { axis }), degrees } }),
+    ...((scale !== 1 || dim === 1) && { scale }),
+  };
+}
+
+function number(value: unknown, where: string): number {
+  if (typeof value === "number" && Number.isFinite(value)) return value;
+  throw new FileError(`${where}: expected a finite number, found ${shown(value)}`);
 }
 
 function coordinates(value: unknown, where: string, count?: number): number[] {

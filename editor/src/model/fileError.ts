@@ -1,3 +1,5 @@
+import type { Turn } from "./turn.ts";
+
 /** What was wrong with a file, in one sentence for a person. */
 export class FileError extends Error {
   override name = "FileError";
@@ -8,5 +10,6 @@ export interface RawEntry {
   name: string;
   position: number[];
   target: number[];
+  turn?: Turn;
   locked?: boolean;
 }

@@ -1,6 +1,7 @@
 /** A session: the control points and all that is set. Never changed in place, so that undo is to take the former one. */
 
 import { DEFAULT_SETTINGS, type Settings } from "./settings.ts";
+import type { Turn } from "./turn.ts";
 import { equal, type Vec3 } from "./vec3.ts";
 
 export type PointId = number;
@@ -11,6 +12,8 @@ export interface ControlPoint {
   readonly name: string;
   readonly position: Vec3;
   readonly target: Vec3;
+  /** How it turns what is near it; without it, it does not resist turning. */
+  readonly turn?: Turn;
   /** It stays where it is: moves pass it over. */
   readonly locked: boolean;
 }
@@ -31,7 +34,7 @@ export interface Session {
 
 export const EMPTY_SESSION: Session = { points: [], selection: [], pairs: [], settings: DEFAULT_SETTINGS };
 
-export const isMoved = (point: ControlPoint): boolean => !equal(point.position, point.target);
+export const isMoved = (point: ControlPoint): boolean => point.turn !== undefined || !equal(point.position, point.target);
 
 export function find(session: Session, id: PointId): ControlPoint | undefined {
   return session.points.find((point) => point.id === id);

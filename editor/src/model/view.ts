@@ -18,6 +18,8 @@ export interface View {
   readonly moves: Moves;
   /** Whether a click on the surface adds a control point. */
   readonly adding: boolean;
+  /** Whether a drag beside the control points selects those in a box, rather than to turn the view. */
+  readonly boxes: boolean;
 }
 
 export const DEFAULT_VIEW: View = {
@@ -28,6 +30,7 @@ export const DEFAULT_VIEW: View = {
   tool: "translate",
   moves: "target",
   adding: true,
+  boxes: false,
 };
 
 const GOLDEN_ANGLE = 137.508;

@@ -10,6 +10,8 @@ import { PointFields } from "./PointFields.tsx";
 import { useApp, useAppState } from "./useStore.ts";
 
 const MOST_PLACED = 200;
+/** More of them go in two columns. */
+const COLUMN = 8;
 
 export function PointsPanel() {
   const app = useApp();
@@ -63,6 +65,9 @@ export function PointsPanel() {
   );
 }
 
+/** Of the shape's size. */
+const share = (part: number): string => (part < 0.0005 ? "0 %" : `${(100 * part).toFixed(part < 0.1 ? 1 : 0)} %`);
+
 function PointList({ points }: { points: readonly ControlPoint[] }) {
   const app = useApp();
   const { session, distances, shape } = useAppState();
@@ -70,7 +75,7 @@ function PointList({ points }: { points: readonly ControlPoint[] }) {
   const size = shape ? 2 * shape.opened.frame.half : 1;
   const chosen = new Set(session.selection);
   return (
-    <ul class="points" aria-label="Control points">
+    <ul class={`points ${points.length > COLUMN ? "two-columns" : ""}`} aria-label="Control points">
       {points.map((point, i) => {
         const away = distances.get(point.id);
         const twin = session.settings.mirror && twinOf(session, point.id);
@@ -85,11 +90,11 @@ function PointList({ points }: { points: readonly ControlPoint[] }) {
               onClick={(event) => app.do(select([point.id], event.shiftKey || event.ctrlKey || event.metaKey ? "toggle" : "replace"))}
             >
               <i class="swatch" style={{ background: cssColour(i) }} />
-              <span class="name">{point.name}</span>
-              {twin !== null && twin !== undefined && <small title="Its twin">↔ {names.get(twin)}</small>}
+              <span class="name" title={point.name}>{point.name}</span>
+              {twin !== null && twin !== undefined && <small title={`Its twin: ${names.get(twin)}`}>↔ <span>{names.get(twin)}</span></small>}
               {point.locked && <Icon name="lock" />}
-              <span class={`distance ${short_ ? "short" : ""}`} title="How far it ends from its target">
-                {isMoved(point) && away !== undefined ? distance(away, size) : ""}
+              <span class={`distance ${short_ ? "short" : ""}`} title={away === undefined ? "" : `It ends ${distance(away, size)} from its target`}>
+                {isMoved(point) && away !== undefined ? share(away / size) : ""}
               </span>
             </button>
           </li>

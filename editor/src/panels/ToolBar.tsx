@@ -5,7 +5,7 @@ import { useApp, useAppState } from "./useStore.ts";
 
 const TOOLS: readonly { tool: Tool; label: string; hint: string; icon: IconName }[] = [
   { tool: "translate", label: "Move", hint: "W", icon: "translate" },
-  { tool: "rotate", label: "Turn several", hint: "E", icon: "rotate" },
+  { tool: "rotate", label: "Turn", hint: "E", icon: "rotate" },
   { tool: "scale", label: "Scale several", hint: "R", icon: "scale" },
 ];
 
@@ -17,6 +17,7 @@ export function ToolBar() {
   return (
     <div class="tool-bar" role="toolbar" aria-label="Tools" aria-orientation="vertical">
       <Button quiet icon="add" label="Click adds control points" hint="A" pressed={view.adding} onClick={() => app.setView({ adding: !view.adding })} />
+      <Button quiet icon="box" label="A drag selects in a box" hint="M" pressed={view.boxes} onClick={() => app.setView({ boxes: !view.boxes })} />
       <hr />
       {TOOLS.map(({ tool, label, hint, icon }) => (
         <Button key={tool} quiet icon={icon} label={label} hint={hint} pressed={view.tool === tool} onClick={() => app.setView({ tool })} />

@@ -53,6 +53,7 @@ export const SHORTCUTS: readonly Shortcut[] = [
   { keys: "0", label: "Reset the selected targets", group: "Edit", matches: plain("0"), run: (app) => app.do(resetTargets("selected")) },
   { keys: "P", label: "Make the two selected twins, or part them", group: "Edit", matches: plain("p"), run: (app) => togglePair(app) },
   { keys: "A", label: "Clicks on the surface add control points, or not", group: "Edit", matches: plain("a"), run: (app) => app.setView({ adding: !app.store.value.view.adding }) },
+  { keys: "M", label: "Drags select in a box, or turn the view", group: "Edit", matches: plain("m"), run: (app) => app.setView({ boxes: !app.store.value.view.boxes }) },
   { keys: "W  E  R", label: "Gizmo: move, turn, scale", group: "Move", matches: (e) => ["w", "e", "r"].some((key) => plain(key)(e)), run: (app, e) => app.setView({ tool: TOOLS[e.key.toLowerCase()] }) },
   { keys: "← → ↑ ↓  Page", label: "Move by a hundredth of the shape (Shift: a tenth)", group: "Move", matches: (e) => e.key in ARROWS && !control(e) && !e.altKey, run: nudgeBy },
   { keys: "Q", label: "Move targets, or the places at rest", group: "Move", matches: plain("q"), run: (app) => app.setView({ moves: app.store.value.view.moves === "target" ? "position" : "target" }) },
@@ -78,10 +79,10 @@ function togglePair(app: App): void {
 export const GESTURES: readonly (readonly [string, string])[] = [
   ["Click", "Add a control point on the surface, or select one"],
   ["Shift click", "Add to the selection, or take away"],
-  ["Shift drag", "Select all in a box"],
+  ["Shift drag", "Select all in a box; with fingers: the tool of that name"],
   ["Drag a point", "Move it freely; Ctrl: in steps; Esc: as if it had not been"],
   ["Alt press, drag", "Add inside of the shape or in empty space; up: deeper"],
-  ["Drag", "Turn the view; right button: shift it; wheel: zoom"],
+  ["Drag", "Turn the view; right button: shift it; wheel: zoom; two fingers: both"],
 ];
 
 const TYPING = "input:not([type=radio]):not([type=range]):not([type=checkbox]):not([type=file]), textarea, select, [contenteditable]";

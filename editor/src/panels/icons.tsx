@@ -9,6 +9,7 @@ const PATHS = {
   rotate: "M20 12a8 8 0 1 1-2.6-5.9M20 3v4h-4",
   scale: "M4 20V10m0 10h10M4 20 20 4m0 0h-6m6 0v6",
   add: "M12 5v14M5 12h14",
+  box: "M4 7V4h3m3.5 0h3M17 4h3v3m0 3.5v3m0 3.5v3h-3m-3.5 0h-3M7 20H4v-3m0-3.5v-3M12 10v4m-2-2h4",
   frame: "M4 8V5a1 1 0 0 1 1-1h3m8 0h3a1 1 0 0 1 1 1v3m0 8v3a1 1 0 0 1-1 1h-3m-8 0H5a1 1 0 0 1-1-1v-3M12 9.5v5M9.5 12h5",
   before: "M12 3v18M5 7h3m-3 5h3m-3 5h3M15 6l5 6-5 6",
   compare: "M3.5 5h17v14h-17zM12 5v14",

@@ -5,6 +5,8 @@
  * Horn, "Closed-form solution of absolute orientation using unit quaternions", 1987.
  */
 
+import type { TurnedPoint } from "./turned.ts";
+
 /** Row-major 3 x 3. */
 export type Matrix = [number, number, number, number, number, number, number, number, number];
 
@@ -21,8 +23,8 @@ const ANCHOR_WEIGHT = 1e-9;
 /** What stands for a missing extent of the control points, relative to the one they have. */
 const RIDGE = 1e-12;
 
-/** The anchor of control points `p` that are moved to `q`, m x 3 each. */
-export function anchor(p: ArrayLike<number>, q: ArrayLike<number>): Anchor {
+/** The anchor of control points `p` that are moved to `q`, m x 3 each, some of them turned. */
+export function anchor(p: ArrayLike<number>, q: ArrayLike<number>, turned: readonly TurnedPoint[] = []): Anchor {
   const m = p.length / 3;
   const mean = (v: ArrayLike<number>, c: number): number => {
     let sum = 0;
@@ -31,8 +33,8 @@ export function anchor(p: ArrayLike<number>, q: ArrayLike<number>): Anchor {
   };
   const pMean = [0, 1, 2].map((c) => mean(p, c));
   const qMean = [0, 1, 2].map((c) => mean(q, c));
-  const pq: Matrix = [0, 0, 0, 0, 0, 0, 0, 0, 0];
-  const pp: Matrix = [0, 0, 0, 0, 0, 0, 0, 0, 0];
+  const pq = zero();
+  const pp = zero();
   for (let i = 0; i < m; i++) {
     for (let c = 0; c < 3; c++) {
       for (let d = 0; d < 3; d++) {
@@ -42,13 +44,26 @@ export function anchor(p: ArrayLike<number>, q: ArrayLike<number>): Anchor {
       }
     }
   }
-  const size = norm(pq);
+  // Of the rotations alone, for rotations; with their scales, for the affine map; and what a scale is found from.
+  const [turns, scaled] = [zero(), zero()];
+  let larger = 0;
+  for (const { rotation, scale, square } of turned) {
+    for (let at = 0; at < 9; at++) {
+      const turn = (square / m) * rotation[3 * (at % 3) + Math.floor(at / 3)];
+      turns[at] += turn;
+      scaled[at] += scale * turn;
+    }
+    for (const diagonal of [0, 4, 8]) pp[diagonal] += square / m;
+    larger += (3 * scale * square) / m;
+  }
+  const local = plus(pq, turns);
+  const size = norm(local);
   const inverse = size > 0 && Number.isFinite(1 / size) ? 1 / size : 0;
-  const rotation = bestRotation(pq.map((e, at) => e * inverse + (at % 4 === 0 ? ANCHOR_WEIGHT : 0)) as Matrix);
+  const rotation = bestRotation(local.map((e, at) => e * inverse + (at % 4 === 0 ? ANCHOR_WEIGHT : 0)) as Matrix);
   const extent = pp[0] + pp[4] + pp[8];
-  const along = traceOfProduct(rotation, pq) / extent;
+  const along = (traceOfProduct(rotation, pq) + larger) / extent;
   const scale = extent > 0 && Number.isFinite(along) ? Math.max(along, 0) : 1;
-  return { rotation, scale, linear: linear(pp, pq, rotation) };
+  return { rotation, scale, linear: linear(pp, plus(pq, scaled), rotation) };
 }
 
 /** `R + (C^T - R P)(P + ridge)^-1`. */
@@ -97,6 +112,8 @@ function solve(l: Matrix, b: number[]): number[] {
   return x;
 }
 
+const zero = (): Matrix => [0, 0, 0, 0, 0, 0, 0, 0, 0];
+const plus = (a: Matrix, b: Matrix): Matrix => a.map((e, at) => e + b[at]) as Matrix;
 const norm = (m: Matrix): number => Math.hypot(...m);
 
 function traceOfProduct(a: Matrix, b: Matrix): number {

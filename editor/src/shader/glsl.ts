@@ -27,11 +27,12 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in uint point;
 
 uniform sampler2D logits;         // row by row, a point's logits in successive texels, four in each
-uniform sampler2D controlPoints;  // row 0: p, row 1: q, row 2: colours
+uniform sampler2D controlPoints;  // row 0: p, row 1: q, row 2: colours, rows 3 to 5: rotations
 uniform int m;
 uniform int transform;
 uniform float temperature;
-uniform bool moved;               // whether any target is not its control point
+uniform bool moved;               // whether any target is not its control point, or turned
+uniform bool anyTurned;           // whether any control point carries a rotation
 uniform mat3 anchorRotation;
 uniform float anchorScale;
 uniform mat3 anchorLinear;
@@ -49,12 +50,20 @@ vec4 fourLogits(int i) {
 
 vec3 p(int i) { return texelFetch(controlPoints, ivec2(i, 0), 0).xyz; }
 vec3 q(int i) { return texelFetch(controlPoints, ivec2(i, 1), 0).xyz; }
+// The transpose of the rotation that a control point carries, its scale, and the square of the size of its frame: 0 for none.
+mat3 turnOf(int i) {
+  vec3 x = texelFetch(controlPoints, ivec2(i, 3), 0).xyz, y = texelFetch(controlPoints, ivec2(i, 4), 0).xyz;
+  return mat3(x, y, texelFetch(controlPoints, ivec2(i, 5), 0).xyz);
+}
+float squareOf(int i) { return texelFetch(controlPoints, ivec2(i, 3), 0).w; }
+float scaleOf(int i) { return texelFetch(controlPoints, ivec2(i, 4), 0).w; }
 
 // The weights relative to the second-largest, which stay finite however small the temperature is.
 int k;          // the dominant control point
 float kLogit;
 float second;   // the second-largest weight
 float secondLogit;
+float first;    // the largest weight
 
 float relative(int i, float logit) { return i == k ? 0.0 : exp((logit - secondLogit) / temperature); }
 
@@ -77,6 +86,7 @@ void findWeights() {
   }
   float ratio = m < 2 ? 0.0 : exp((secondLogit - kLogit) / temperature);
   second = ratio / (1.0 + ratio * sum);
+  first = 1.0 / (1.0 + ratio * sum);
 }
 
 // A right-handed frame with the first axis u. Duff et al., "Building an orthonormal basis, revisited", 2017.
@@ -126,6 +136,13 @@ mat3 bestRotation(mat3 c) {
   return v * transpose(u);
 }
 
+// What a turned control point counts: the square of its weight times that of its frame, over the second-largest weight unless the
+// dominant one is turned (crates/core/src/mls/turned.rs).
+float shareOf(int i, float logit) {
+  float r = relative(i, logit), w = i == k ? first : second * r;
+  return squareOf(i) * w * (squareOf(k) > 0.0 ? w : r);
+}
+
 struct Moments {
   vec3 sumA;      // sum of r a
   vec3 sumShift;  // sum of r (b - a)
@@ -168,6 +185,24 @@ mat3 conformal(vec3 pk, vec3 qk, out Moments moments) {
   c -= outerProduct(second * sumA, sumB);
   extent -= second * dot(sumA, sumA);
   moments = Moments(rows * sumA, sumShift);
+  mat3 turns = mat3(0.0);
+  float larger = 0.0;
+  if (anyTurned) {
+    if (squareOf(k) > 0.0) {
+      c *= second;
+      extent *= second;
+    }
+    for (int i = 0; i < m; i++) {
+      if ((i & 3) == 0) four = fourLogits(i);
+      if (squareOf(i) == 0.0) continue;
+      float share = shareOf(i, four[i & 3]);
+      turns += share * (transpose(rows) * turnOf(i) * columns);
+      larger += 3.0 * share * scaleOf(i);
+      extent += 3.0 * share;
+    }
+  }
+  mat3 places = c;
+  c += turns;
   float norm = size(c);
   mat3 rotation = anchorRotation;
   mat3 local = transpose(columns) * anchorRotation * rows;
@@ -177,7 +212,7 @@ mat3 conformal(vec3 pk, vec3 qk, out Moments moments) {
   }
   if (transform == RIGID) return rotation;
   mat3 t = transpose(local);
-  float scale = (dot(t[0], c[0]) + dot(t[1], c[1]) + dot(t[2], c[2])) / extent;
+  float scale = (dot(t[0], places[0]) + dot(t[1], places[1]) + dot(t[2], places[2]) + larger) / extent;
   return rotation * (extent > 0.0 ? max(scale, 0.0) : anchorScale);
 }
 
@@ -222,6 +257,19 @@ mat3 affine(vec3 pk, vec3 qk, out Moments moments) {
   pp -= outerProduct(second * sumA, sumA);
   pe -= outerProduct(second * sumA, sumE);
   moments = Moments(rows * sumA, sumShift);
+  if (anyTurned) {
+    if (squareOf(k) > 0.0) {
+      pp *= second;
+      pe *= second;
+    }
+    for (int i = 0; i < m; i++) {
+      if ((i & 3) == 0) four = fourLogits(i);
+      if (squareOf(i) == 0.0) continue;
+      float share = shareOf(i, four[i & 3]);
+      pp += mat3(share);
+      pe += share * (transpose(rows) * (scaleOf(i) * turnOf(i) - transpose(anchorLinear)));
+    }
+  }
   float norm = size(pp);
   if (!(norm > 0.0)) return anchorLinear;
   pp = pp / norm + mat3(RIDGE);
@@ -281,7 +329,8 @@ void main() {
   y = x + (map * arm - arm) + (qk - pk) + second * moments.sumShift;
   if (transform == AFFINE) {
     mat3 cofactors = mat3(cross(map[1], map[2]), cross(map[2], map[0]), cross(map[0], map[1]));
-    turned = (dot(map[0], cofactors[0]) < 0.0 ? -1.0 : 1.0) * (cofactors * normal);
+    // Along the inverse transpose, and on the side of the winding even under a reflection.
+    turned = cofactors * normal;
   } else {
     turned = map * normal;
   }

@@ -7,6 +7,7 @@
 import type { Transform } from "../model/settings.ts";
 import { anchor } from "./anchor.ts";
 import { DEFORM_VERTEX_SHADER, NO_FRAGMENTS } from "./glsl.ts";
+import { isStill, type TurnedPoint } from "./turned.ts";
 
 /** What is drawn: each vertex belongs to a point of the shape, whose logits it has. */
 export interface RestVertices {
@@ -23,6 +24,7 @@ export interface GpuMotion {
   /** m x 3 */
   p: Float64Array;
   q: Float64Array;
+  turned: readonly TurnedPoint[];
   transform: Transform;
   temperature: number;
   tint: Tint;
@@ -31,23 +33,33 @@ export interface GpuMotion {
 const TRANSFORM_CODES: Record<Transform, number> = { rigid: 0, similarity: 1, affine: 2 };
 const TINT_CODES: Record<Tint["by"], number> = { nothing: 0, weight: 1, point: 2 };
 const UNIFORMS = [
-  "logits", "controlPoints", "m", "transform", "temperature", "moved",
+  "logits", "controlPoints", "m", "transform", "temperature", "moved", "anyTurned",
   "anchorRotation", "anchorScale", "anchorLinear", "tintBy", "tinted",
 ] as const; // prettier-ignore
+/** Of the table of control points: p, q, colours, and the rows of rotations with squares and scales beside. */
+const ROWS = 6;
 /** Larger than any logit that means anything, and safe to compute with, unlike infinity. */
 const LARGEST_LOGIT = 1e30;
+
+/** The texture units of the two samplers. */
+const UNITS = { logits: 0, controlPoints: 1 };
+
+/** Who keeps account of a context that is shared; contexts are such themselves. */
+export type GlState = {
+  [name in "useProgram" | "activeTexture" | "bindTexture" | "pixelStorei"]: (
+    ...values: Parameters<WebGL2RenderingContext[name]>
+  ) => unknown;
+};
 
 export class Kernel {
   readonly gl: WebGL2RenderingContext;
   readonly program: WebGLProgram;
   readonly uniforms: Record<(typeof UNIFORMS)[number], WebGLUniformLocation | null>;
+  readonly state: GlState;
 
-  readonly #afterwards: () => void;
-
-  /** `afterwards` is called when the context has been used: what others believe of its state is not so any more. */
-  constructor(gl: WebGL2RenderingContext, afterwards: () => void = () => {}) {
-    this.gl = gl;
-    this.#afterwards = afterwards;
+  /** `state` is asked for what others set too, so that they know; the context itself where there is nobody else. */
+  constructor(gl: WebGL2RenderingContext, state: GlState = gl) {
+    [this.gl, this.state] = [gl, state];
     this.program = link(gl);
     this.uniforms = Object.fromEntries(
       UNIFORMS.map((name) => [name, gl.getUniformLocation(this.program, name)]),
@@ -59,21 +71,27 @@ export class Kernel {
     return this.use(() => new BoundVertices(this, rest));
   }
 
-  /** Does some work in the context, from a state that it knows. Nothing is asked of the context: the answer would have to be waited for. */
+  /** Does some work in the context. Only what the browser knows without waiting for the GPU is asked of it. */
   use<T>(work: () => T): T {
-    const { gl } = this;
+    const { gl, state } = this;
+    const array = gl.getParameter(gl.VERTEX_ARRAY_BINDING) as WebGLVertexArrayObject | null;
     gl.bindVertexArray(null);
-    gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
-    gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
-    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
-    gl.pixelStorei(gl.UNPACK_ROW_LENGTH, 0);
+    state.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
+    state.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
+    state.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
+    state.pixelStorei(gl.UNPACK_ROW_LENGTH, 0);
     try {
       return work();
     } finally {
-      gl.bindVertexArray(null);
+      gl.bindVertexArray(array);
       gl.bindBuffer(gl.ARRAY_BUFFER, null);
-      this.#afterwards();
     }
+  }
+
+  /** Makes a texture the one that is worked on, and that the sampler of its unit reads. */
+  bindTexture(unit: keyof typeof UNITS, texture: WebGLTexture | null): void {
+    this.state.activeTexture(this.gl.TEXTURE0 + UNITS[unit]);
+    this.state.bindTexture(this.gl.TEXTURE_2D, texture);
   }
 }
 
@@ -124,7 +142,7 @@ export class BoundVertices {
       gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, at, buffer),
     );
     gl.bindTransformFeedback(gl.TRANSFORM_FEEDBACK, null);
-    this.#controlPoints = dataTexture(gl);
+    this.#controlPoints = dataTexture(kernel, "controlPoints");
   }
 
   /**
@@ -145,14 +163,14 @@ export class BoundVertices {
       for (let i = 0; i < m; i++) padded[to + i] = Math.min(logits[from + i], LARGEST_LOGIT);
     }
     this.#kernel.use(() => {
-      this.#logits ??= dataTexture(gl);
-      gl.bindTexture(gl.TEXTURE_2D, this.#logits);
+      this.#logits ??= dataTexture(this.#kernel, "logits");
+      this.#kernel.bindTexture("logits", this.#logits);
       gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, padded);
       this.#m = m;
       this.#colours = colours;
-      this.#table = new Float32Array(4 * m * 3);
-      gl.bindTexture(gl.TEXTURE_2D, this.#controlPoints);
-      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, m, 3, 0, gl.RGBA, gl.FLOAT, null);
+      this.#table = new Float32Array(4 * m * ROWS);
+      this.#kernel.bindTexture("controlPoints", this.#controlPoints);
+      gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, m, ROWS, 0, gl.RGBA, gl.FLOAT, null);
     });
     return true;
   }
@@ -162,22 +180,21 @@ export class BoundVertices {
     if (this.#logits && motion.p.length === 3 * this.#m) this.#kernel.use(() => this.#compute(motion));
   }
 
-  #compute({ p, q, transform, temperature, tint }: GpuMotion): void {
-    const { gl, program, uniforms } = this.#kernel;
+  #compute({ p, q, turned, transform, temperature, tint }: GpuMotion): void {
+    const { gl, program, state, uniforms } = this.#kernel;
     const m = this.#m;
-    gl.useProgram(program);
-    gl.activeTexture(gl.TEXTURE0);
-    gl.bindTexture(gl.TEXTURE_2D, this.#logits ?? null);
-    gl.activeTexture(gl.TEXTURE1);
-    gl.bindTexture(gl.TEXTURE_2D, this.#controlPoints);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, m, 3, gl.RGBA, gl.FLOAT, this.#fill(p, q));
-    const { rotation, scale, linear } = anchor(p, q);
-    gl.uniform1i(uniforms.logits, 0);
-    gl.uniform1i(uniforms.controlPoints, 1);
+    state.useProgram(program);
+    this.#kernel.bindTexture("logits", this.#logits ?? null);
+    this.#kernel.bindTexture("controlPoints", this.#controlPoints);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, m, ROWS, gl.RGBA, gl.FLOAT, this.#fill(p, q, turned));
+    const { rotation, scale, linear } = anchor(p, q, turned);
+    gl.uniform1i(uniforms.logits, UNITS.logits);
+    gl.uniform1i(uniforms.controlPoints, UNITS.controlPoints);
     gl.uniform1i(uniforms.m, m);
     gl.uniform1i(uniforms.transform, TRANSFORM_CODES[transform]);
     gl.uniform1f(uniforms.temperature, temperature);
-    gl.uniform1i(uniforms.moved, p.every((c, at) => c === q[at]) ? 0 : 1);
+    gl.uniform1i(uniforms.moved, p.every((c, at) => c === q[at]) && turned.every(isStill) ? 0 : 1);
+    gl.uniform1i(uniforms.anyTurned, turned.length > 0 ? 1 : 0);
     gl.uniformMatrix3fv(uniforms.anchorRotation, true, rotation);
     gl.uniform1f(uniforms.anchorScale, scale);
     gl.uniformMatrix3fv(uniforms.anchorLinear, true, linear);
@@ -226,7 +243,7 @@ export class BoundVertices {
     if (this.#logits) gl.deleteTexture(this.#logits);
   }
 
-  #fill(p: Float64Array, q: Float64Array): Float32Array {
+  #fill(p: Float64Array, q: Float64Array, turned: readonly TurnedPoint[]): Float32Array {
     const [table, m] = [this.#table, this.#m];
     for (let i = 0; i < m; i++) {
       for (let c = 0; c < 3; c++) {
@@ -235,13 +252,20 @@ export class BoundVertices {
         table[4 * (2 * m + i) + c] = this.#colours[3 * i + c];
       }
     }
+    table.fill(0, 12 * m);
+    for (const { index, rotation, scale, square } of turned) {
+      for (let row = 0; row < 3; row++) table.set(rotation.slice(3 * row, 3 * row + 3), 4 * ((3 + row) * m + index));
+      table[4 * (3 * m + index) + 3] = square;
+      table[4 * (4 * m + index) + 3] = scale;
+    }
     return table;
   }
 }
 
-function dataTexture(gl: WebGL2RenderingContext): WebGLTexture {
+function dataTexture(kernel: Kernel, unit: keyof typeof UNITS): WebGLTexture {
+  const { gl } = kernel;
   const texture = gl.createTexture();
-  gl.bindTexture(gl.TEXTURE_2D, texture);
+  kernel.bindTexture(unit, texture);
   for (const parameter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
     gl.texParameteri(gl.TEXTURE_2D, parameter, gl.NEAREST);
   }

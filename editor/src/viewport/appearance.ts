@@ -56,7 +56,10 @@ export async function pointColours(opened: OpenedShape, files: Files): Promise<F
     const geometry = loader.parse(bytes.slice().buffer);
     const count = opened.positions.length;
     const colour = geometry.getAttribute("color");
-    if (colour?.array.length === count) return Float32Array.from(colour.array);
+    // By its own account of them: bytes count as parts of the largest.
+    if (colour?.array.length === count) {
+      return Float32Array.from({ length: count }, (_, at) => colour.getComponent(Math.floor(at / 3), at % 3));
+    }
     const harmonics = geometry.getAttribute("harmonics");
     if (harmonics?.array.length !== count) return undefined;
     // The constant term of spherical harmonics, as 3D Gaussian splats have it, in sRGB.

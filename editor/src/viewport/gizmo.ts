@@ -1,38 +1,46 @@
 /** The gizmo: moves, turns or scales the selected control points along axes, in planes and freely. */
 
-import { type Matrix4, Object3D, type Scene, Vector3 } from "three";
+import { Group, type Matrix4, Object3D, type Quaternion, type Scene, Vector3 } from "three";
 import { TransformControls } from "three/addons/controls/TransformControls.js";
 import type { Tool } from "../model/view.ts";
 import type { Stage } from "./stage.ts";
 
 export interface GizmoEvents {
   begin(): void;
-  /** How places (relative to the shape's box) move, from those with which the drag began. */
-  move(map: (place: Vector3) => Vector3): void;
+  /** How places (relative to the shape's box) move, from those with which the drag began, and how they turn, if they do. */
+  move(map: (place: Vector3) => Vector3, turn: Quaternion | undefined): void;
   end(): void;
 }
 
 export class Gizmo {
   readonly #controls: TransformControls;
+  readonly #scene: Scene;
+  readonly #shown = new Group();
   readonly #proxy = new Object3D();
   readonly #start = new Vector3();
+  #dim: 1 | 2 | 3 = 3;
   /** Steps that translations keep to, relative to the shape's box; 0: none. */
   snap = 0;
 
   constructor(stage: Stage, scene: Scene, events: GizmoEvents) {
+    this.#scene = scene;
     this.#controls = new TransformControls(stage.camera, stage.pane);
     this.#controls.setSize(0.78);
     this.#controls.setColors(0xe0483e, 0x55a630, 0x3d7fe0, 0xffb020);
-    scene.add(this.#proxy, this.#controls.getHelper());
+    this.#shown.add(this.#controls.getHelper());
+    scene.add(this.#proxy, this.#shown);
     this.#controls.addEventListener("change", () => stage.request());
     this.#controls.addEventListener("dragging-changed", ({ value }) => {
       stage.orbit.enabled = !value;
+      this.#show(!value);
     });
     this.#controls.addEventListener("mouseDown", () => {
       this.#start.copy(this.#proxy.position);
       events.begin();
     });
-    this.#controls.addEventListener("objectChange", () => events.move(this.#map()));
+    this.#controls.addEventListener("objectChange", () => {
+      events.move(this.#map(), this.#controls.mode === "rotate" ? this.#proxy.quaternion : undefined);
+    });
     this.#controls.addEventListener("mouseUp", () => {
       events.end();
       this.#settle();
@@ -41,7 +49,15 @@ export class Gizmo {
 
   /** Only the axes that the shape has. */
   setDimension(dim: 1 | 2 | 3): void {
-    Object.assign(this.#controls, { showY: dim > 1, showZ: dim > 2, showXY: dim > 1, showYZ: dim > 2, showXZ: dim > 2 });
+    this.#dim = dim;
+    this.#showAxes();
+  }
+
+  /** A shape in the plane turns about z alone. */
+  #showAxes(): void {
+    const [dim, turns] = [this.#dim, this.#controls.mode === "rotate"];
+    const axes = { showX: dim > 2 || !turns, showY: dim > 2 || (dim > 1 && !turns), showZ: dim > 2 || (dim > 1 && turns) };
+    Object.assign(this.#controls, { ...axes, showXY: dim > 1, showYZ: dim > 2, showXZ: dim > 2 });
   }
 
   get dragging(): boolean {
@@ -53,6 +69,22 @@ export class Gizmo {
     return this.#controls.axis !== null;
   }
 
+  set visible(visible: boolean) {
+    this.#shown.visible = visible;
+  }
+
+  /** Neither seen nor asked where the pointer is, for as long as something else is dragged. */
+  set away(away: boolean) {
+    this.#controls.enabled = !away;
+    this.#show(!away);
+  }
+
+  /** While something is dragged it is the shape that one looks at, and a frame is to be quick. */
+  #show(shown: boolean): void {
+    if (shown) this.#scene.add(this.#shown);
+    else this.#shown.removeFromParent();
+  }
+
   /** Puts the gizmo at a place, or takes it away. Not during its own drag. */
   place(at: Vector3 | undefined, tool: Tool): void {
     if (this.dragging) return;
@@ -61,7 +93,10 @@ export class Gizmo {
       return;
     }
     this.#proxy.position.copy(at);
-    if (this.#controls.mode !== tool) this.#controls.setMode(tool);
+    if (this.#controls.mode !== tool) {
+      this.#controls.setMode(tool);
+      this.#showAxes();
+    }
     if (!this.#controls.object) this.#controls.attach(this.#proxy);
   }
 

@@ -122,19 +122,29 @@ export class Markers {
     );
     const ends = this.#lineGeometry.getAttribute("position") as BufferAttribute;
     markers.forEach((marker, i) => {
-      position.array.set(marker.place, 3 * i);
-      tone.array.set(colourOf(marker.number), 3 * i);
-      state.array[i] = (marker.selected ? 1 : marker.twin ? 2 : 0) + (marker.locked ? 4 : 0);
-      ends.array.set(marker.rest, 6 * i);
-      ends.array.set(marker.place, 6 * i + 3);
+      write(position, 3 * i, marker.place);
+      write(tone, 3 * i, colourOf(marker.number));
+      write(state, i, [(marker.selected ? 1 : marker.twin ? 2 : 0) + (marker.locked ? 4 : 0)]);
+      write(ends, 6 * i, marker.rest);
+      write(ends, 6 * i + 3, marker.place);
     });
-    for (const attribute of [position, tone, state, ends]) attribute.needsUpdate = true;
   }
 }
 
-const scratch = new Color();
+/** Only what has changed goes to the GPU. */
+function write(attribute: BufferAttribute, at: number, values: readonly number[]): void {
+  const { array } = attribute;
+  values.forEach((value, k) => {
+    const single = Math.fround(value);
+    if (array[at + k] === single) return;
+    array[at + k] = single;
+    attribute.needsUpdate = true;
+  });
+}
+
+const colours: [number, number, number][] = [];
 
 /** The colour of the i-th control point, linear. */
 export function colourOf(i: number): [number, number, number] {
-  return scratch.setHSL(...hueOf(i), SRGBColorSpace).toArray() as [number, number, number];
+  return (colours[i] ??= new Color().setHSL(...hueOf(i), SRGBColorSpace).toArray() as [number, number, number]);
 }

@@ -1,6 +1,6 @@
 /**
- * What the pointer does on the shape: a click adds or selects, a drag of a marker moves freely, Shift and drag selects a box,
- * Alt adds at a chosen depth. All else is left to the camera.
+ * What the pointer does on the shape: a click adds or selects, a drag of a marker moves freely, Shift and drag (or a drag
+ * alone, where boxes are chosen) selects a box, Alt adds at a chosen depth. All else is left to the camera.
  */
 
 import { type Camera, Plane, Ray, Raycaster, Vector2, Vector3 } from "three";
@@ -13,6 +13,8 @@ import type { Stage } from "./stage.ts";
 export interface PointerEvents {
   /** The markers as they are shown, relative to the shape's box. */
   markers(): readonly Vector3[];
+  /** Whether a drag beside the markers selects in a box without Shift, which fingers do not have. */
+  boxes(): boolean;
   isSelected(marker: number): boolean;
   meet(ray: Ray, at: Vector2, through: boolean): Hit | undefined;
   click(hit: Hit | undefined): void;
@@ -45,6 +47,8 @@ export class Pointer {
   readonly #box = document.createElement("div");
   readonly #caster = new Raycaster();
   readonly #from = new Vector2();
+  /** Where the pane is: asked when something begins, for the answer may ask for a layout. */
+  #pane = new DOMRect(0, 0, 1, 1);
   #action: Action | undefined;
 
   constructor(stage: Stage, gizmo: Gizmo, events: PointerEvents) {
@@ -74,24 +78,27 @@ export class Pointer {
       return;
     }
     if (event.button !== 0) return;
+    this.#pane = this.#stage.pane.getBoundingClientRect();
     this.#from.copy(this.#at(event));
     const marker = this.#markerAt(event);
     if (marker >= 0) this.#action = { kind: "press", marker };
-    else if (event.shiftKey) this.#action = { kind: "box" };
+    else if (event.shiftKey || this.#events.boxes()) this.#action = { kind: "box" };
     else if (event.altKey) this.#beginDepth(event);
     else this.#action = { kind: "click" };
-    this.#stage.orbit.enabled = this.#action?.kind === "click";
+    // A second finger is the camera's, so that it knows of the first.
+    this.#stage.orbit.enabled = this.#action?.kind === "click" || (this.#action?.kind === "box" && !event.shiftKey);
   }
 
   #moved(event: PointerEvent): void {
+    this.#gizmo.snap = event.ctrlKey || event.metaKey ? this.step : 0;
     if (!this.#action) {
       if (event.pointerType === "mouse" && event.buttons === 0) {
+        this.#pane = this.#stage.pane.getBoundingClientRect();
         const over = this.#gizmo.hovered || this.#markerAt(event) >= 0;
         this.#stage.pane.classList.toggle("over-marker", over);
       }
       return;
     }
-    this.#gizmo.snap = event.ctrlKey || event.metaKey ? this.step : 0;
     const away = this.#at(event).distanceTo(this.#from);
     if (this.#action.kind === "press" && away > STILL) this.#beginMove(this.#action.marker);
     if (this.#action.kind === "move") {
@@ -110,11 +117,14 @@ export class Pointer {
     const still = this.#at(event).distanceTo(this.#from) <= STILL;
     this.#end();
     if (action.kind === "press") {
-      this.#events.select([action.marker], event.shiftKey || event.ctrlKey || event.metaKey ? "toggle" : "replace");
+      const several = event.shiftKey || event.ctrlKey || event.metaKey || this.#events.boxes();
+      this.#events.select([action.marker], several ? "toggle" : "replace");
     } else if (action.kind === "move" || action.kind === "depth") {
       this.#events.commit();
     } else if (action.kind === "box" && !still) {
       this.#events.select(this.#markersInBox(this.#at(event)), "add");
+    } else if (action.kind === "box" && !event.shiftKey) {
+      this.#events.click(undefined);
     } else if (action.kind === "click" && still) {
       this.#events.click(this.#events.meet(this.#ray(event), this.#at(event), false));
     }
@@ -124,6 +134,7 @@ export class Pointer {
     this.#action = undefined;
     this.#box.hidden = true;
     this.#stage.orbit.enabled = true;
+    this.#gizmo.away = false;
   }
 
   #beginMove(marker: number): void {
@@ -133,6 +144,7 @@ export class Pointer {
     const plane = new Plane().setFromNormalAndCoplanarPoint(this.#stage.camera.getWorldDirection(new Vector3()), from);
     const grip = ray.intersectPlane(plane, new Vector3()) ?? from;
     this.#action = { kind: "move", plane, from: grip };
+    this.#gizmo.away = true;
     this.#events.beginMove(marker);
   }
 
@@ -154,14 +166,13 @@ export class Pointer {
 
   /** Up is farther away: a quarter of the window is half of the shape's size. */
   #atDepth({ hit, ray }: { hit: Hit; ray: Ray }, event: PointerEvent): Hit {
-    const deeper = (4 * (this.#from.y - this.#at(event).y)) / this.#stage.pane.clientHeight;
+    const deeper = (4 * (this.#from.y - this.#at(event).y)) / this.#pane.height;
     const by = ray.direction.clone().multiplyScalar(deeper);
     return { rest: hit.rest.clone().add(by), shown: hit.shown.clone().add(by) };
   }
 
   #at(event: PointerEvent): Vector2 {
-    const { left, top } = this.#stage.pane.getBoundingClientRect();
-    return new Vector2(event.clientX - left, event.clientY - top);
+    return new Vector2(event.clientX - this.#pane.left, event.clientY - this.#pane.top);
   }
 
   #ray(event: PointerEvent): Ray {
@@ -169,8 +180,8 @@ export class Pointer {
   }
 
   #rayAt(at: Vector2): Ray {
-    const { clientWidth, clientHeight } = this.#stage.pane;
-    const ndc = new Vector2((at.x / clientWidth) * 2 - 1, 1 - (at.y / clientHeight) * 2);
+    const { width, height } = this.#pane;
+    const ndc = new Vector2((at.x / width) * 2 - 1, 1 - (at.y / height) * 2);
     this.#caster.setFromCamera(ndc, this.#stage.camera);
     return this.#caster.ray;
   }
@@ -194,8 +205,7 @@ export class Pointer {
   }
 
   #onScreen(place: Vector3): Vector2 {
-    const { clientWidth, clientHeight } = this.#stage.pane;
-    return toScreen(place, this.#stage.camera, clientWidth, clientHeight);
+    return toScreen(place, this.#stage.camera, this.#pane.width, this.#pane.height);
   }
 
   #showBox(to: Vector2): void {

@@ -12,11 +12,11 @@ import {
   MeshStandardMaterial,
   type Object3D,
   Points,
-  PointsMaterial,
   Sphere,
   Vector3,
 } from "three";
 import type { Colouring } from "../model/view.ts";
+import { cloudMaterial, discDiameter } from "./cloud.ts";
 import type { BoundVertices, GpuMotion, Kernel, RestVertices } from "../shader/kernel.ts";
 
 /** What is drawn of a shape. */
@@ -42,6 +42,7 @@ export class ShapeView {
   readonly #drawn: Drawn;
   readonly #plain: BufferGeometry;
   readonly #tinted: BufferGeometry;
+  readonly #plainMaterial: Material | Material[];
   readonly #tintMaterial: Material;
   readonly #node: Mesh | Points;
   readonly #wire: Mesh | undefined;
@@ -71,7 +72,8 @@ export class ShapeView {
     this.#tinted.setAttribute("color", tint);
     if (index) {
       this.#tintMaterial = new MeshStandardMaterial({ vertexColors: true, roughness: 0.75, side: DoubleSide });
-      this.#node = new Mesh(this.#plain, this.#materials);
+      this.#plainMaterial = drawn.groups.length > 0 ? drawn.materials : drawn.materials[0];
+      this.#node = new Mesh(this.#plain, this.#plainMaterial);
       const wire = new MeshStandardMaterial({ color: 0x20242c, wireframe: true, transparent: true, opacity: 0.35 });
       // A little nearer to the eye than the faces.
       Object.assign(wire, { polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1 });
@@ -79,17 +81,11 @@ export class ShapeView {
       this.#wire.visible = false;
       this.#wire.frustumCulled = false;
     } else {
-      const size = Math.max(1.5, Math.min(5, 900 / Math.sqrt(this.bound.count)));
-      this.#tintMaterial = new PointsMaterial({ vertexColors: true, size, sizeAttenuation: false });
-      this.#drawn.materials = [
-        new PointsMaterial({
-          size,
-          sizeAttenuation: false,
-          vertexColors: drawn.colours !== undefined,
-          color: new Color(drawn.colours ? 0xffffff : 0x7f8fa8),
-        }),
-      ];
-      this.#node = new Points(this.#plain, this.#drawn.materials[0]);
+      const coloured = drawn.colours !== undefined;
+      const diameter = discDiameter(drawn.rest.positions);
+      this.#plainMaterial = cloudMaterial(diameter, new Color(coloured ? 0xffffff : 0xa4b1c6), coloured);
+      this.#tintMaterial = cloudMaterial(diameter, new Color(0xffffff), true);
+      this.#node = new Points(this.#plain, this.#plainMaterial);
     }
     this.#node.frustumCulled = false;
     this.object = new Group().add(this.#node);
@@ -108,7 +104,7 @@ export class ShapeView {
   show(colouring: Colouring, wireframe: boolean): void {
     const tinted = colouring !== "material";
     this.#node.geometry = tinted ? this.#tinted : this.#plain;
-    this.#node.material = tinted ? this.#tintMaterial : this.#materials;
+    this.#node.material = tinted ? this.#tintMaterial : this.#plainMaterial;
     if (this.#wire) this.#wire.visible = wireframe;
   }
 
@@ -118,10 +114,5 @@ export class ShapeView {
     this.#tintMaterial.dispose();
     (this.#wire?.material as Material | undefined)?.dispose();
     this.bound.dispose();
-  }
-
-  get #materials(): Material | Material[] {
-    const { materials, groups } = this.#drawn;
-    return groups.length > 0 ? materials : materials[0];
   }
 }

@@ -13,6 +13,7 @@ import {
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { Clouds } from "./cloud.ts";
 
 const FIELD_OF_VIEW = 32;
 /** Room around the shape. */
@@ -20,6 +21,7 @@ const MARGIN = 1.22;
 
 export class Stage {
   readonly scene = new Scene();
+  readonly clouds = new Clouds();
   readonly camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
   readonly renderer: WebGLRenderer;
   /** The part of the drawing surface that takes the pointer: all of it, or its left half. */
@@ -32,6 +34,8 @@ export class Stage {
   /** What is seen in the right half, where there are two. */
   showRight: ((right: boolean) => void) | undefined;
   readonly #host: HTMLElement;
+  /** Of the drawing surface, in pixels of the page. */
+  #size = { width: 1, height: 1 };
   #wanted = false;
 
   constructor(host: HTMLElement) {
@@ -69,6 +73,12 @@ export class Stage {
     return this.showRight !== undefined;
   }
 
+  /** Whether a drag of the left button or of one finger turns the view. */
+  set turns(turns: boolean) {
+    this.orbit.mouseButtons.LEFT = turns ? MOUSE.ROTATE : null;
+    this.orbit.touches.ONE = turns ? TOUCH.ROTATE : null;
+  }
+
   /** Draws soon. */
   request(): void {
     if (this.#wanted) return;
@@ -89,11 +99,12 @@ export class Stage {
 
   #render(): void {
     const { renderer, scene, camera } = this;
-    const [width, height] = [this.#host.clientWidth, this.#host.clientHeight];
+    const { width, height } = this.#size;
     renderer.setScissorTest(false);
     renderer.clear();
     if (!this.showRight) {
       renderer.setViewport(0, 0, width, height);
+      this.clouds.draw(renderer, camera, 0, width, height);
       renderer.render(scene, camera);
       return;
     }
@@ -103,6 +114,7 @@ export class Stage {
       renderer.setViewport(x, 0, width / 2, height);
       renderer.setScissor(x, 0, width / 2, height);
       this.showRight(right);
+      this.clouds.draw(renderer, camera, x, width / 2, height);
       renderer.render(scene, camera);
     }
     this.showRight(false);
@@ -111,6 +123,7 @@ export class Stage {
   resize(): void {
     const [width, height] = [this.#host.clientWidth, this.#host.clientHeight];
     if (width === 0 || height === 0) return;
+    this.#size = { width, height };
     this.renderer.setSize(width, height, false);
     this.pane.style.width = this.split ? "50%" : "100%";
     const narrow = Math.min(1, this.camera.aspect);
@@ -162,8 +175,9 @@ export class Stage {
   /** Neither what is near nor what is far is cut off. */
   #setDepths(): void {
     const away = this.camera.position.distanceTo(this.orbit.target);
-    this.camera.near = Math.max(0.002, away / 60);
-    this.camera.far = away + 20;
+    const far = away + 20;
+    if (this.camera.far === far) return;
+    Object.assign(this.camera, { near: Math.max(0.002, away / 60), far });
     this.camera.updateProjectionMatrix();
   }
 }

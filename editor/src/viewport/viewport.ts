@@ -1,15 +1,18 @@
 /** The view of the shape and its control points; every edit that it makes is a command or a gesture of the history. */
 
-import { Box3, Matrix3, type Ray, Sphere, Vector2, Vector3 } from "three";
+import { Box3, Matrix3, type Quaternion, type Ray, Sphere, Vector2, Vector3 } from "three";
 import type { SerializedBVH } from "three-mesh-bvh";
-import { addPoint, type Box, type History, moveSelected, select } from "../commands/index.ts";
+import { addPoint, type Box, type History, moveSelected, select, turnSelected } from "../commands/index.ts";
 import type { Handles } from "../model/handles.ts";
 import { twinOf } from "../model/mirror.ts";
 import { leader, type PointId, selected, type Session } from "../model/session.ts";
 import type { Slot } from "../model/slot.ts";
+import { turnsOf } from "../model/turn.ts";
 import type { Vec3 } from "../model/vec3.ts";
-import type { View } from "../model/view.ts";
-import { type GpuMotion, Kernel, type RestVertices } from "../shader/kernel.ts";
+import type { Tool, View } from "../model/view.ts";
+import { type GlState, type GpuMotion, Kernel, type RestVertices } from "../shader/kernel.ts";
+import { turnedPoints } from "../shader/turned.ts";
+import { FrameTimes } from "./frameTimes.ts";
 import { Gizmo } from "./gizmo.ts";
 import { colourOf, type Marker, Markers } from "./markers.ts";
 import { type Hit, Picking } from "./picking.ts";
@@ -42,29 +45,29 @@ export class Viewport {
   readonly #markers = new Markers();
   readonly #gizmo: Gizmo;
   readonly #pointer: Pointer;
+  readonly #times = new FrameTimes();
   readonly #sides: Partial<Record<Slot, { view: ShapeView; bound: Bound | undefined; frame?: Frame }>> = {};
   #picking: Picking | undefined;
   #box: Box = { centre: [0, 0, 0], half: 1 };
   #dim: 1 | 2 | 3 = 3;
   #view: View;
   #stale = true;
-  /** Milliseconds of handlers since the last frame. */
-  #handling = 0;
 
   constructor(host: HTMLElement, history: History, view: View) {
     this.#history = history;
     this.#view = view;
     this.stage = new Stage(host);
     const gl = this.stage.renderer.getContext() as WebGL2RenderingContext;
-    this.#kernel = new Kernel(gl, () => this.stage.renderer.resetState());
+    this.#kernel = new Kernel(gl, this.stage.renderer.state as GlState);
     this.stage.scene.add(this.#markers.object);
     this.#gizmo = new Gizmo(this.stage, this.stage.scene, {
       begin: () => history.begin("Move"),
-      move: (map) => this.#drag((place) => this.#toFile(map(this.#toView(place)))),
+      move: (map, turn) => this.#drag((place) => this.#toFile(map(this.#toView(place))), turn),
       end: () => history.commit(),
     });
     this.#pointer = new Pointer(this.stage, this.#gizmo, {
       markers: () => history.session.points.map((point) => this.#toView(point[this.#view.moves])),
+      boxes: () => this.#view.boxes,
       isSelected: (marker) => history.session.selection.includes(history.session.points[marker].id),
       meet: (ray, at, through) => this.#meet(ray, at, through),
       click: (hit) => this.#click(hit),
@@ -80,7 +83,7 @@ export class Viewport {
     });
     this.stage.startOrbit();
     this.stage.onFrame = () => this.#frame();
-    this.stage.onDrawn = (start) => this.#measure(start);
+    this.stage.onDrawn = (start) => this.#times.tell(start, history.inGesture);
     history.subscribe(() => this.invalidate());
   }
 
@@ -151,8 +154,10 @@ export class Viewport {
     const places = new Float32Array(3 * points.length);
     const turned = new Float32Array(3 * points.length);
     points.forEach((point, i) => {
-      const map = new Matrix3().fromArray(maps, 9 * point).invert(); // read by columns: the inverse transpose, row by row
-      const normal = new Vector3().fromArray(normals, 3 * i).applyMatrix3(map).normalize();
+      const map = new Matrix3().fromArray(maps, 9 * point);
+      const side = Math.sign(map.determinant()); // of the winding, even under a reflection
+      map.invert(); // read by columns: the inverse transpose, row by row
+      const normal = new Vector3().fromArray(normals, 3 * i).applyMatrix3(map).normalize().multiplyScalar(side);
       normal.toArray(turned, 3 * i);
       for (let c = 0; c < 3; c++) places[3 * i + c] = (y[3 * point + c] - this.#box.centre[c]) / this.#box.half;
     });
@@ -163,6 +168,7 @@ export class Viewport {
   setView(view: View): void {
     const split = view.comparison;
     this.#view = view;
+    this.stage.turns = !view.boxes;
     if (split !== this.stage.split) {
       this.stage.showRight = split ? (right) => this.#showSide(right) : undefined;
       if (!split) this.#showSide(false);
@@ -252,10 +258,12 @@ export class Viewport {
     this.stage.home([...corners, ...targets], this.#dim < 3);
   }
 
-  #drag(to: (place: Vec3) => Vec3): void {
-    const start = performance.now();
-    this.#history.preview((session) => moveSelected(session, this.#view.moves, to));
-    this.#handling += performance.now() - start;
+  #drag(to: (place: Vec3) => Vec3, turn?: Quaternion): void {
+    this.#history.preview((session) => {
+      // One that is turned stays in its place, to the last bit.
+      const moved = turn && session.selection.length === 1 ? session : moveSelected(session, this.#view.moves, to);
+      return turn && this.#view.moves === "target" ? turnSelected(moved, [turn.x, turn.y, turn.z, turn.w]) : moved;
+    });
   }
 
   #frame(gizmo = true): void {
@@ -270,15 +278,14 @@ export class Viewport {
     }
     this.#markers.setSize(MARKER_PIXELS, this.stage.renderer.getPixelRatio());
     this.#markers.update(this.#markersOf(session));
-    if (gizmo) this.#gizmo.place(this.#pivot(session), session.selection.length > 1 ? this.#view.tool : "translate");
+    if (gizmo) this.#gizmo.place(this.#pivot(session), this.#tool(session));
   }
 
-  /** Tells the Performance API how long JavaScript took for a frame of a drag: the pointer's handlers and the drawing. */
-  #measure(start: number): void {
-    if (this.#history.inGesture) {
-      performance.measure("neuralmls-drag-frame", { start, duration: this.#handling + performance.now() - start });
-    }
-    this.#handling = 0;
+  /** What the gizmo does: there are things that one control point, one at rest, or one on a line cannot. */
+  #tool({ selection }: Session): Tool {
+    const { tool, moves } = this.#view;
+    const can = selection.length > 1 || (tool === "rotate" && moves === "target");
+    return can && (tool !== "rotate" || this.#dim > 1) ? tool : "translate";
   }
 
   /** Weights that are still being fitted: what was bound last moves as far as its control points are still there. */
@@ -306,7 +313,12 @@ export class Viewport {
         : at >= 0
           ? ({ by: "weight", of: at } as const)
           : ({ by: "nothing" } as const);
-    return { p: p.map(enter), q: handles.aim(targets, session.settings).map(enter), transform, temperature, tint };
+    const turns = new Map(session.points.map((point) => [point.id, this.#atRest ? undefined : point.turn]));
+    const turn = ids.map((id) => turns.get(id));
+    const aimed = handles.aim(targets, { ...session.settings, ...turnsOf(turn) });
+    const places = p.map(enter);
+    const turned = turnedPoints(places, turn);
+    return { p: places, q: aimed.map(enter), turned, transform, temperature, tint };
   }
 
   #markersOf(session: Session): Marker[] {
@@ -353,7 +365,7 @@ export class Viewport {
   #add(side: Slot, drawn: Drawn): ShapeView {
     const view = new ShapeView(this.#kernel, drawn);
     this.#sides[side] = { view, bound: undefined };
-    this.stage.scene.add(view.object);
+    (drawn.index ? this.stage.scene : this.stage.clouds.scene).add(view.object);
     view.object.visible = side === "main";
     return view;
   }
@@ -361,13 +373,15 @@ export class Viewport {
   #remove(side: Slot): void {
     const shown = this.#sides[side];
     if (!shown) return;
-    this.stage.scene.remove(shown.view.object);
+    shown.view.object.removeFromParent();
     shown.view.dispose();
     delete this.#sides[side];
   }
 
   #showSide(right: boolean): void {
     const { main, comparison } = this.#sides;
+    // What one drags by is on the side that takes the pointer.
+    this.#gizmo.visible = !right;
     if (main) main.view.object.visible = !right || !comparison;
     if (comparison) comparison.view.object.visible = right;
   }

@@ -34,6 +34,11 @@ export function widenMaps(maps: Float64Array<ArrayBuffer>, dim: number): Float64
   return wide;
 }
 
+/** m x 3 x 3 -> m x dim x dim. */
+export function narrowMaps(maps: Float64Array, dim: number): Float64Array {
+  return dim === 3 ? maps : maps.filter((_, at) => at % 3 < dim && Math.floor((at % 9) / 3) < dim);
+}
+
 /** The box of points, n x 3, and the frame by which it becomes [-1, 1]; refused where there is no size to measure by. */
 export function measure(points: Float64Array): { bounds: { min: Vec3; max: Vec3 }; frame: Frame } {
   const min: [number, number, number] = [Infinity, Infinity, Infinity];

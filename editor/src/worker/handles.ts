@@ -5,15 +5,15 @@
 
 import type { Handles } from "../model/handles.ts";
 import { Handles as CoreHandles, initSync } from "../wasm/neuralmls_wasm.js";
-import { narrow, widen } from "./coordinates.ts";
+import { narrow, narrowMaps, widen } from "./coordinates.ts";
 
 /** Of the control points (m x 3) of a shape with points of `dim` coordinates, with the logits at their own places (m x m). */
 export function createHandles(core: WebAssembly.Module, p: Float64Array, dim: number, ownLogits: Float32Array): Handles {
   initSync({ module: core }); // the first time
   const handles = new CoreHandles(narrow(p, dim), dim, ownLogits);
   return {
-    aim(targets, { transform, temperature, adherence }) {
-      const aimed = handles.aim(narrow(targets, dim), transform, temperature, adherence);
+    aim(targets, { turns, transform, temperature, adherence }) {
+      const aimed = handles.aim(narrow(targets, dim), turns && narrowMaps(turns, dim), transform, temperature, adherence);
       return widen(aimed as Float64Array<ArrayBuffer>, dim);
     },
     free: () => handles.free(),

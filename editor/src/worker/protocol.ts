@@ -93,6 +93,8 @@ export interface Fitted {
 export interface Motion {
   /** m x 3 in file units (for narrow tables the missing coordinates are passed over). */
   targets: Float64Array;
+  /** m x 9: how each turns, a rotation times a scale, row-major; NaN for those that do not say. Without it none does. */
+  turns?: Float64Array;
   transform: Transform;
   temperature: number;
   /** From 0, near the targets, to 1, onto them; control points that this would harm are left soft. */

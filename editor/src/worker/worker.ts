@@ -1,7 +1,7 @@
 /** A worker: the core compiled to WebAssembly, and what it holds for the main thread. */
 
 import initialise, { type Fit, Points, ShapeFile } from "../wasm/neuralmls_wasm.js";
-import { measure, narrow, relative, widen } from "./coordinates.ts";
+import { measure, narrow, narrowMaps, relative, widen } from "./coordinates.ts";
 import type { Answer, Ask, Give, Moved, Operation, Question } from "./messages.ts";
 import { CoreError, type Fitted, type Motion, type Opened, type Saved, type Soft, type Stage } from "./protocol.ts";
 
@@ -64,14 +64,15 @@ const operations: { [O in Operation]: (ask: Ask<O>, tell: Tell) => Give<O> } = {
   },
 
   deform({ motion, maps }, tell) {
-    const { targets, transform, temperature, adherence } = inDimension(motion);
-    const [positions, turned] = present(fitted).deform(targets, transform, temperature, adherence, maps, tell("deform"));
+    const { targets, turns, transform, temperature, adherence } = inDimension(motion);
+    const aimed = present(fitted).aim(targets, turns, transform, temperature, adherence);
+    const [positions, turned] = present(fitted).deform(aimed, turns, transform, temperature, maps, tell("deform"));
     return { positions, maps: turned ?? null } as Moved;
   },
 
   land({ motion }) {
-    const { targets, transform, temperature, adherence } = inDimension(motion);
-    const [places, reason, index, amount, remedy] = present(fitted).land(targets, transform, temperature, adherence);
+    const { targets, turns, transform, temperature, adherence } = inDimension(motion);
+    const [places, reason, index, amount, remedy] = present(fitted).land(targets, turns, transform, temperature, adherence);
     const soft: Soft | null = reason === undefined ? null : { reason, index, amount, remedy };
     return { places: widen(places, present(points).dim), soft };
   },
@@ -81,8 +82,8 @@ const operations: { [O in Operation]: (ask: Ask<O>, tell: Tell) => Give<O> } = {
   },
 
   advise({ motion, places }) {
-    const { targets, transform, temperature, adherence } = inDimension(motion);
-    const found = present(fitted).advise(places, targets, transform, temperature, adherence);
+    const { targets, turns, transform, temperature, adherence } = inDimension(motion);
+    const found = present(fitted).advise(places, targets, turns, transform, temperature, adherence);
     return found.map(([kind, amount, , first, second, better, left]) => ({ kind, amount, near: [first, second], better, left }));
   },
 
@@ -141,7 +142,9 @@ function sharing(ownLogits: Float32Array, m: number): number[] {
 }
 
 function inDimension(motion: Motion): Motion {
-  return { ...motion, targets: narrow(motion.targets, present(points).dim) };
+  const { dim } = present(points);
+  const turns = motion.turns && { turns: narrowMaps(motion.turns, dim) };
+  return { ...motion, ...turns, targets: narrow(motion.targets, dim) };
 }
 
 function present<T>(value: T | undefined): T {

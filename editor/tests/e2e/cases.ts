@@ -3,6 +3,7 @@
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Page } from "@playwright/test";
+import type { Turn } from "../../src/model/turn.ts";
 import { data, pages, samples } from "./tools.ts";
 
 export interface Compared {
@@ -12,11 +13,13 @@ export interface Compared {
   /** The largest distance of the two, and the largest from the shape at rest, as fractions of the box. */
   worst: number;
   moved: number;
+  /** The largest angle between the shader's normals and those that the core's maps give, in degrees. */
+  leaning: number;
 }
 
 declare global {
   interface Window {
-    compare(name: string, base64: string, p: number[], q: number[], weights: object, motions: object[]): Promise<Compared[]>;
+    compare(name: string, base64: string, p: number[], q: number[], turned: (Turn | undefined)[], weights: object, motions: object[]): Promise<Compared[]>;
   }
 }
 
@@ -61,11 +64,11 @@ export function published(): Case | null {
 }
 
 /** By every map at each of three temperatures, soft and exact, with the weights of one fit. */
-export async function compare(page: Page, { file, p, q }: Case, weights: object): Promise<Compared[]> {
+export async function compare(page: Page, { file, p, q }: Case, weights: object, turned: (Turn | undefined)[] = []): Promise<Compared[]> {
   await page.goto(`${pages}/shader.html`);
   await page.waitForFunction(() => window.compare);
   return page.evaluate(
-    ([base64, p, q, weights, motions]) => window.compare("shape.obj", base64, p, q, weights, motions),
-    [file.toString("base64"), p.flat(), q.flat(), weights, motions] as const,
+    ([base64, p, q, turned, weights, motions]) => window.compare("shape.obj", base64, p, q, turned, weights, motions),
+    [file.toString("base64"), p.flat(), q.flat(), turned, weights, motions] as const,
   );
 }

@@ -144,3 +144,18 @@ export async function save(page: Page, entry: RegExp): Promise<{ name: string; b
   ]);
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
 }
+
+/** The pixels of a picture, four bytes each. */
+export async function pixels(page: Page, png: Buffer): Promise<{ width: number; height: number; rgba: Uint8Array }> {
+  const { width, height, base64 } = await page.evaluate(async (base64) => {
+    const blob = new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], { type: "image/png" });
+    const image = await createImageBitmap(blob);
+    const canvas = new OffscreenCanvas(image.width, image.height).getContext("2d")!;
+    canvas.drawImage(image, 0, 0);
+    const { data } = canvas.getImageData(0, 0, image.width, image.height);
+    let text = "";
+    for (let i = 0; i < data.length; i += 8192) text += String.fromCharCode(...data.subarray(i, i + 8192));
+    return { width: image.width, height: image.height, base64: btoa(text) };
+  }, png.toString("base64"));
+  return { width, height, rgba: new Uint8Array(Buffer.from(base64, "base64")) };
+}

@@ -1,6 +1,7 @@
 /** The shader solves the same problem as the core, by the same rule: 1e-4 of the box, whatever the map and the temperature. */
 
 import { expect, test } from "@playwright/test";
+import type { Turn } from "../../src/model/turn.ts";
 import { compare, published, sample } from "./cases.ts";
 
 const neural = { kind: "neural", width: 1024, seed: 0, steps: null };
@@ -11,12 +12,39 @@ for (const name of ["chair", "airplane", "car", "table", "ShapeNetChair1"]) {
     const given = name === "ShapeNetChair1" ? published() : sample(name);
     test.skip(!given, "there is no folder of real files: set NEURALMLS_DATA");
     for (const weights of [neural, classic]) {
-      for (const { transform, temperature, adherence, worst, moved } of await compare(page, given!, weights)) {
+      for (const { transform, temperature, adherence, worst, moved, leaning } of await compare(page, given!, weights)) {
         const what = `${weights.kind}, ${transform}, T = ${temperature}, adherence ${adherence}`;
         test.info().annotations.push({ type: "error", description: `${what}: ${worst.toExponential(1)}` });
         expect(moved, what).toBeGreaterThan(0.01);
+        expect(worst, what).toBeLessThan(1e-4);
+        expect(leaning, what).toBeLessThan(0.01);
+      }
+    }
+  });
+}
+
+for (const name of ["chair", "airplane"]) {
+  test(`the shader agrees with the core on turned control points: ${name}`, async ({ page }) => {
+    const given = sample(name);
+    const turned = given.p.map((_, i): Turn | undefined =>
+      i % 3 === 1 ? undefined : { axis: [1, i, -2], degrees: 25 * Math.cos(i), scale: 1 + 0.1 * Math.sin(i) },
+    );
+    for (const weights of [neural, classic]) {
+      const plain = await compare(page, given, weights);
+      for (const [at, { transform, temperature, worst, moved }] of (await compare(page, given, weights, turned)).entries()) {
+        const what = `${weights.kind}, ${transform}, T = ${temperature}`;
+        test.info().annotations.push({ type: "error", description: `${what}: ${worst.toExponential(1)}` });
+        expect(moved, what).not.toBeCloseTo(plain[at]!.moved, 6);
         expect(worst, what).toBeLessThan(1e-4);
       }
     }
   });
 }
+
+test("normals stay on the side of the winding under a reflection", async ({ page }) => {
+  const table = sample("table");
+  const compared = await compare(page, { ...table, q: table.p.map(([x, y, z]) => [-x, y, z]) }, classic);
+  const affine = compared.filter(({ transform }) => transform === "affine");
+  expect(affine).toHaveLength(3);
+  for (const { leaning } of affine) expect(leaning).toBeLessThan(0.01);
+});

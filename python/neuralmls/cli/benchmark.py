@@ -24,7 +24,9 @@ def benchmark() -> None:
 @benchmark.command()
 @click.argument("folder", type=options.PATH)
 @click.option(
-    "--methods", metavar="NAME,...", help="rbf,classic,neural,arap if not given; also neural-exact,biharmonic."
+    "--methods",
+    metavar="NAME,...",
+    help="rbf,classic,neural,shape-aware,arap if not given; also neural-exact,biharmonic.",
 )
 @click.option("--counts", metavar="M,...", default="12,40", help="Numbers of control points.")
 @options.json

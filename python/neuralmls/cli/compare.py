@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 @click.option(
     "--methods",
     metavar="NAME,...",
-    help="neural,neural-exact,classic,rbf,arap,biharmonic,kpd; all if not given.",
+    help="neural,neural-exact,shape-aware,classic,rbf,arap,biharmonic,kpd; all if not given.",
 )
 @click.option("--output", "-o", metavar="FOLDER", type=options.PATH, help="Write each deformed shape into it.")
 @click.option("--picture", type=options.PATH, help="Draw the source and all results, .png.")
@@ -52,9 +52,9 @@ def compare(
 ) -> None:
     """Deform a shape by every method that can, and measure each.
 
-    Neural weights (as in the paper, and with exact handles), classic weights, thin-plate RBF,
-    ARAP, biharmonic weights, and with --kpd KeypointDeformer. A method that cannot do the
-    shape says why. The baselines need
+    Neural weights (as in the paper, with exact handles, and taught by the shape), classic weights,
+    thin-plate RBF, ARAP, biharmonic weights, and with --kpd KeypointDeformer. A method that cannot
+    do the shape says why. The baselines need
     pip install 'neuralmls[baselines]', the pictures 'neuralmls[figures]'
 
     Example: neuralmls compare chair.obj --points chair.json --picture all.png
@@ -91,6 +91,8 @@ def compare(
         raise ArgumentError(f"--scatter: distortion is that of a surface, and {shape} has no faces")
     if output is not None:
         outputs.make_folder(output)
+    if control_points.is_turned:
+        warnings.append("rotations of control points are left out: the other methods have none")
     for sentence in warnings:
         console.warning(sentence)
     load_libraries()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
@@ -41,6 +41,13 @@ TransformName: TypeAlias = Literal["rigid", "similarity", "affine"]
     help="Move a target, from where the file has it; may be repeated.",
 )
 @click.option(
+    "--turn",
+    "turns",
+    metavar="NAME=AXIS,DEGREES",
+    multiple=True,
+    help="Turn a control point, and what is near it, about x, y, z or an axis of three numbers; may be repeated.",
+)
+@click.option(
     "--exact/--no-exact",
     default=None,
     help="Take the control points all the way to their targets, at any price, or only near them. "
@@ -60,6 +67,7 @@ def deform(
     temperature: float,
     transform: TransformName,
     moves: Sequence[str],
+    turns: Sequence[str],
     exact: bool | None,
     check: bool,
     json: bool,
@@ -75,7 +83,8 @@ def deform(
 
     Example: neuralmls deform chair.obj --points chair.json -o bent.obj
     """
-    offsets = _offsets(moves)
+    offsets = dict(_offsets(moves))
+    axes = dict(_axes(turns))
     to_stdout = output == outputs.STANDARD_OUTPUT
     if not to_stdout:
         outputs.check_output(output, force=force, inputs=[shape, points])
@@ -85,6 +94,7 @@ def deform(
     from neuralmls.cli.session import Settings, with_session
     from neuralmls.control_points import ControlPoints
     from neuralmls.shape import read
+    from neuralmls.turns import Turn
 
     as_number("temperature", temperature, 0)
     choice.check()
@@ -95,11 +105,12 @@ def deform(
             outputs.check_ending(output, source.extensions, f"a bent {source.format} file (formats are not converted)")
         deformation.check_size(source)
         control_points = ControlPoints.read(points).moved(offsets)
+        control_points = control_points.turned({name: Turn(tuple(axis), angle) for name, (axis, angle) in axes.items()})
         given = Settings(choice, temperature, transform, 0.0 if exact is False else 1.0, careful=exact is None)
         settings = with_session(given, points)
     warnings = deformation.check_points(control_points, points, source)
-    moved = bool((control_points.sources != control_points.targets).any())
-    if moved and not to_stdout:
+    moved = bool((control_points.sources != control_points.targets).any()) or control_points.is_turned
+    if moved:
         _check_side_files(source, output, force=force)
     if not moved:
         warnings.append("no control point is moved, so that the output is the input")
@@ -134,41 +145,63 @@ def deform(
         summary.show(told, everything=verbose, file=out)
 
 
-def _offsets(moves: Sequence[str]) -> dict[str, list[float]]:
-    """What `--move NAME=dx,dy,dz` says; a name may have = in it."""
-    offsets: dict[str, list[float]] = {}
-    for text in moves:
-        name, equals, numbers = text.rpartition("=")
+def _offsets(moves: Sequence[str]) -> Iterator[tuple[str, list[float]]]:
+    """What `--move NAME=dx,dy,dz` says."""
+    for name, numbers, text in _named("--move", "moved", moves):
         try:
-            offset = [float(number) for number in numbers.split(",")]
+            yield name, [_number(number) for number in numbers]
         except ValueError:
-            offset = []
-        if not equals or not name or not offset:
-            raise ArgumentError(f"--move: expected NAME=dx,dy,dz, found '{text}'")
-        if name in offsets:
-            raise ArgumentError(f"--move: '{name}' is moved twice")
-        offsets[name] = offset
-    return offsets
+            raise ArgumentError(f"--move: expected NAME=dx,dy,dz, found '{text}'") from None
+
+
+def _axes(turns: Sequence[str]) -> Iterator[tuple[str, tuple[list[float], float]]]:
+    """The axis, of 3 numbers or none, and the degrees that `--turn NAME=AXIS,DEGREES` says."""
+    axes = {"x": [1.0, 0.0, 0.0], "y": [0.0, 1.0, 0.0], "z": [0.0, 0.0, 1.0]}
+    for name, (*letters, degrees), text in _named("--turn", "turned", turns):
+        try:
+            known = axes.get("".join(letters)) or [_number(number) for number in letters]
+            if len(known) not in (0, 3):
+                raise ValueError
+            yield name, (known, _number(degrees))
+        except ValueError:
+            expected = "NAME=AXIS,DEGREES with the axis x, y, z or three numbers (none in the plane)"
+            raise ArgumentError(f"--turn: expected {expected}, found '{text}'") from None
+
+
+def _named(option: str, done: str, texts: Sequence[str]) -> Iterator[tuple[str, list[str], str]]:
+    """Name and numbers of each `NAME=NUMBERS`; a name may have = in it."""
+    seen = set()
+    for text in texts:
+        name, _, numbers = text.rpartition("=")
+        if name in seen:
+            raise ArgumentError(f"{option}: '{name}' is {done} twice")
+        seen.add(name)
+        yield name, numbers.split(",") if name else ["no name"], text
+
+
+def _number(text: str) -> float:
+    """A number as a person writes it: Python would read 1_000 as one, too."""
+    if "_" in text:
+        raise ValueError
+    return float(text)
 
 
 def _check_side_files(shape: Shape, output: Path, *, force: bool) -> None:
-    """Refuse buffers of a glTF file that are to be written beside the output and are there already."""
-    first = output.with_suffix(".bin")
-    if shape.format != "glTF" or force or not first.is_file():
-        return
-    for name in shape.encode(shape.positions / 2, stem=output.stem)[1]:  # whatever the positions, if they are others
+    """Refuse files that are to be written beside the output, where they are there already or there is no such place."""
+    if output == outputs.STANDARD_OUTPUT:
+        for name in shape.side_files(shape.path.stem):
+            raise ArgumentError(
+                f"standard output takes one file, but this {shape.format} is written with '{name}' beside it: "
+                "name an output file"
+            )
+    for name in shape.side_files(output.stem):
         outputs.check_output(output.parent / name, force=force)
 
 
 def _write(shape: Shape, result: Deformation, output: Path, *, force: bool) -> tuple[list[str], list[str]]:
     """Write the shape; return the files written, and warnings of files beside it that were kept."""
     if output == outputs.STANDARD_OUTPUT:
-        data, side_files = shape.encode(result.positions, maps=result.maps)
-        if side_files:
-            raise ArgumentError(
-                f"standard output takes one file, but this {shape.format} is written with '{next(iter(side_files))}' "
-                "beside it: name an output file"
-            )
+        data, _ = shape.encode(result.positions, maps=result.maps)
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()
         return [], []

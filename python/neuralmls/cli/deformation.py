@@ -12,14 +12,13 @@ from neuralmls.advice import Advice, advise
 from neuralmls.cli.session import Settings
 from neuralmls.cli.stages import Stages
 from neuralmls.cli.weights import WeightsChoice
-from neuralmls.control_points import ControlPoints
+from neuralmls.control_points import LARGEST, ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ControlPointError, FileError
 from neuralmls.exact import Aim, ExactHandles
 from neuralmls.shape import Shape
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, softmax
 
-LARGEST = 1e150  # units
 # A control point with less of the weight at its own place shares it; the training aims at 0.9.
 OWNED = 0.85
 # An exact control point that is farther from its target than this part of the longest side has not arrived.
@@ -28,15 +27,17 @@ ARRIVED = 1e-6
 
 @dataclass(frozen=True)
 class Deformation:
-    """A shape's new positions, and how far each control point ended from its target.
+    """A shape's new positions, and how far each control point ended from its target, and from its rotation in degrees.
 
-    `adherence` is what was used, `kept_soft` why that is 0 where more was asked for.
+    `off` is NaN for those that carry none; `adherence` is what was used, `kept_soft` why that is 0 where more was asked
+    for.
     """
 
     positions: Floats
     maps: NDArray[np.float64] | None
     weights: NeuralWeights | ShapeAwareWeights | InverseDistanceWeights
     missed: NDArray[np.float64]
+    off: NDArray[np.float64]
     adherence: float
     kept_soft: str | None
 
@@ -61,7 +62,7 @@ def check_points(points: ControlPoints, file: Path, shape: Shape) -> list[str]:
     Raises
     ------
     ControlPointError
-        They have another dimension than the shape; the message names both files.
+        They have another dimension than the shape, or are nowhere near anything; the message names both files.
     """
     try:
         return points.check(shape.bounds)
@@ -91,18 +92,24 @@ def deformed(shape: Shape, points: ControlPoints, settings: Settings, stages: St
     with stages.stage("bind") as report:
         deformer = Deformer(shape.positions, weights, transform=transform, progress=report)
     with stages.stage("move") as report:
+        rotations, scales = points.rotations, points.scales
         exact = ExactHandles(weights, transform=transform)
         aim_at = exact.aim_carefully if settings.careful else exact.aim
-        aim = aim_at(points.targets, temperature, settings.adherence)
+        aim = aim_at(points.targets, temperature, settings.adherence, rotations=rotations, scales=scales)
+        aimed = aim.targets
         maps: NDArray[np.float64] | None = None
         if shape.has_normals:
-            y, maps = deformer.deform(aim.targets, temperature, return_maps=True, progress=report)
+            y, maps = deformer.deform(
+                aimed, temperature, rotations=rotations, scales=scales, return_maps=True, progress=report
+            )
         else:
-            y = deformer.deform(aim.targets, temperature, progress=report)
+            y = deformer.deform(aimed, temperature, rotations=rotations, scales=scales, progress=report)
         handles = Deformer(points.sources, weights, transform=transform)
-        missed = np.linalg.norm(handles.deform(aim.targets, temperature) - points.targets, axis=1)
+        arrived, turned = handles.deform(aimed, temperature, rotations=rotations, scales=scales, return_maps=True)
+        missed = np.linalg.norm(arrived - points.targets, axis=1)
     adherence = settings.adherence if aim.soft is None else 0.0
-    return Deformation(y, maps, weights, missed, adherence, _why_soft(aim, exact, points, settings))
+    kept_soft = _why_soft(aim, exact, points, settings)
+    return Deformation(y, maps, weights, missed, _off(turned, rotations), adherence, kept_soft)
 
 
 def _why_soft(aim: Aim, exact: ExactHandles, points: ControlPoints, settings: Settings) -> str | None:
@@ -115,12 +122,27 @@ def _why_soft(aim: Aim, exact: ExactHandles, points: ControlPoints, settings: Se
         if aim.soft.reason == "shared"
         else f"'{name}' would stay {amount:.3g} off all the same"
     )
-    remedy = exact.remedy(points.targets, settings.temperature, settings.adherence)
+    remedy = exact.remedy(
+        points.targets, settings.temperature, settings.adherence, rotations=points.rotations, scales=points.scales
+    )
     if remedy is not None:
         said += f"; {remedy} they arrive"
     if aim.soft.reason == "shared" and settings.choice.steps is not None:
         said += "; without --steps it is trained until they own their places"
     return said
+
+
+def _off(maps: NDArray[np.float64], rotations: NDArray[np.float64] | None) -> NDArray[np.float64]:
+    """The angle in degrees between the rotation in each map (m, d, d) and that which was asked for."""
+    d = maps.shape[1]
+    off = np.full(len(maps), np.nan)
+    if rotations is None:
+        return off
+    for i in np.flatnonzero(~np.isnan(rotations[:, 0, 0])):
+        u, _, vt = np.linalg.svd(maps[i] @ rotations[i].T)
+        cosine = (np.trace(u @ vt) - (d - 2)) / 2
+        off[i] = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
+    return off
 
 
 def not_parted(points: ControlPoints, choice: WeightsChoice, result: Deformation) -> list[str]:
@@ -161,5 +183,7 @@ def advice(shape: Shape, points: ControlPoints, result: Deformation, settings: S
         transform=settings.transform,
         temperature=settings.temperature,
         adherence=result.adherence,
+        rotations=points.rotations,
+        scales=points.scales,
         names=points.names,
     )

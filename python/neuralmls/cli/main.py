@@ -66,6 +66,10 @@ def neuralmls() -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code: 0, 1 for bad data, 2 for wrong use, 130 when interrupted."""
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
+    if sys.stdout is None:  # closed by who started us: a result that goes there is refused as one on a full disk
+        sys.stdout = os.fdopen(os.open(os.devnull, os.O_RDONLY), "w")
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w")  # noqa: SIM115 (as long as the process)
     for stream in (sys.stdout, sys.stderr):
         with suppress(AttributeError, ValueError):  # a terminal that cannot show a name still shows the rest
             stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]

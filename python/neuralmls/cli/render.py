@@ -55,7 +55,7 @@ def render(
     outputs.check_output(output, force=force, inputs=[*shapes, *([points] if points else [])])
 
     from neuralmls.arrays import as_number
-    from neuralmls.cli.deformation import check_points
+    from neuralmls.cli.deformation import check_points, longest_side
     from neuralmls.control_points import ControlPoints
     from neuralmls.figures.render import Panel
     from neuralmls.figures.render import render as draw
@@ -65,6 +65,8 @@ def render(
     choice.check()
     stages = Stages(quiet=quiet)
     sources = [read(path) for path in shapes]
+    for source in sources:
+        longest_side(source)  # refuses what has no size that a number could hold
     control_points = None if points is None else ControlPoints.read(points)
     if points is not None and control_points is not None:
         for sentence in check_points(control_points, points, sources[0]):

@@ -27,6 +27,13 @@ def summary(shape: Shape, points: ControlPoints, settings: Settings, result: Def
     else:
         weights |= {"alpha": function.alpha, "epsilon": function.epsilon}
     moved = np.linalg.norm(points.targets - points.sources, axis=1)
+    told = [
+        {"name": name, "moved": float(m), "distance_to_target": float(d)}
+        for name, m, d in zip(points.names, moved, result.missed, strict=True)
+    ]
+    for one, turn, off in zip(told, points.turns, result.off, strict=True):
+        if turn is not None:
+            one |= {"turned": turn.degrees, "degrees_to_rotation": float(off), "scaled": turn.scale}
     return {
         "input": str(shape.path),
         "format": shape.format,
@@ -39,10 +46,7 @@ def summary(shape: Shape, points: ControlPoints, settings: Settings, result: Def
         "adherence": result.adherence,
         "kept_soft": result.kept_soft,
         "session": settings.session,
-        "control_points": [
-            {"name": name, "moved": float(m), "distance_to_target": float(d)}
-            for name, m, d in zip(points.names, moved, result.missed, strict=True)
-        ],
+        "control_points": told,
     }
 
 
@@ -53,11 +57,15 @@ def show(told: dict[str, Any], *, everything: bool, file: TextIO) -> None:
     if told["triangles"]:
         vertices += f", in {told['triangles']:,} triangles"
     count = sum(point["moved"] > 0 for point in points)
+    turned = sum("turned" in point for point in points)
     console.line(f"{told['input']} -> {', '.join(told['files'] or [told['output']])}", file)
     console.pairs(
         [
             ("vertices", vertices),
-            ("control points", f"{len(points):,}, {count:,} of them moved"),
+            (
+                "control points",
+                f"{len(points):,}, {count:,} of them moved" + (f", {turned:,} turned" if turned else ""),
+            ),
             ("weights", _weights(weights)),
             ("transform", f"{told['transform']}, temperature {told['temperature']:g}"),
             *_handles(told),
@@ -68,20 +76,32 @@ def show(told: dict[str, Any], *, everything: bool, file: TextIO) -> None:
     )
     shown = points
     if not everything and len(points) > MOST:
-        shown = sorted(points, key=lambda point: -point["distance_to_target"])[:MOST]
+        shown = sorted(points, key=lambda point: ("turned" not in point, -point["distance_to_target"]))[:MOST]
     rows = [
         (
             point["name"],
             _length(point["moved"], side),
             _length(point["distance_to_target"], side),
             f"{100 * point['distance_to_target'] / side:.2f} %",
+            *(_turn(point) if turned else ()),
         )
         for point in shown
     ]
     print(file=file)
-    console.table(["control point", "moved by", "off its target by", "of the size"], rows, (1, 2, 3), file)
+    titles = ["control point", "moved by", "off its target by", "of the size"]
+    titles += ["turned by", "off its rotation by"] if turned else []
+    console.table(titles, rows, tuple(range(1, len(titles))), file)
     if len(shown) < len(points):
-        console.line(f"  the {MOST} farthest from their targets; --verbose shows all {len(points):,}", file)
+        first = "turned, then the farthest" if turned else "farthest"
+        console.line(f"  the {MOST} {first} from their targets; --verbose shows all {len(points):,}", file)
+
+
+def _turn(point: dict[str, Any]) -> tuple[str, str]:
+    """By how much a control point is turned, and how much of that is missing."""
+    if "turned" not in point:
+        return "", ""
+    scaled = f", scaled {point['scaled']:g}" if point["scaled"] != 1 else ""
+    return f"{point['turned']:.4g} deg{scaled}", f"{point['degrees_to_rotation']:.1f} deg"
 
 
 def _handles(told: dict[str, Any]) -> list[tuple[str, str]]:
@@ -104,6 +124,8 @@ def _length(value: float, side: float) -> str:
     """A length in file units, to about a hundred-thousandth of the shape; what is rounding only is 0."""
     if value < 1e-7 * side:
         return "0"
+    if value >= 1e9:
+        return f"{value:.6g}"
     digits = max(4 - floor(log10(side)), 0)
     text = f"{value:.{digits}f}"
     return text if float(text) > 0 else f"< {10.0**-digits:.{digits}f}"

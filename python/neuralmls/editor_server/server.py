@@ -29,23 +29,11 @@ TYPES = {
     ".wasm": "application/wasm",
 }
 
-# As in editor/security.ts, and what only a header can say.
-CONTENT_SECURITY_POLICY = "; ".join(
-    [
-        "default-src 'none'",
-        "script-src 'self' 'wasm-unsafe-eval'",
-        "worker-src 'self'",
-        "connect-src 'self' blob:",
-        "style-src 'self'",
-        "img-src 'self' blob: data:",
-        "base-uri 'none'",
-        "form-action 'none'",
-        "frame-ancestors 'none'",
-    ]
-)
+# What the built editor may do, in a file of the build (editor/security.ts); and what only a header can say.
+POLICY = "content-security-policy.txt"
+NOT_IN_FRAMES = "frame-ancestors 'none'"
 
 HEADERS = {
-    "Content-Security-Policy": CONTENT_SECURITY_POLICY,
     "Cross-Origin-Opener-Policy": "same-origin",
     "Cross-Origin-Resource-Policy": "same-origin",
     "Referrer-Policy": "no-referrer",
@@ -79,8 +67,10 @@ class EditorServer(ThreadingHTTPServer):
         ArgumentError
             The port is taken or not allowed.
         """
-        if not (static / "index.html").is_file():
+        if not all((static / name).is_file() for name in ("index.html", POLICY)):
             raise FileError("the editor has not been built here: run 'make editor', which needs Node.js 20 or later")
+        policy = (static / POLICY).read_text(encoding="utf-8").strip()
+        self.headers = {**HEADERS, "Content-Security-Policy": f"{policy}; {NOT_IN_FRAMES}"}
         self.contents: dict[str, Path | bytes] = {
             "/" + path.relative_to(static).as_posix(): path for path in static.rglob("*") if path.is_file()
         }
@@ -166,7 +156,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _send(self, status: int, data: bytes, kind: str, *, with_body: bool) -> None:
         self.send_response(status)
-        for name, value in HEADERS.items():
+        for name, value in self.server.headers.items():
             self.send_header(name, value)
         self.send_header("Content-Type", kind)
         self.send_header("Content-Length", str(len(data)))

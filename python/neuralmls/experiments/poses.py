@@ -15,10 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from neuralmls.arrays import as_points
+from neuralmls.arrays import as_points, as_triangles
 from neuralmls.errors import ArgumentError, FileError
 from neuralmls.experiments.methods import METHODS, Array, Method, Surface, classic, neural
-from neuralmls.metrics.triangles import as_triangles
 from neuralmls.placement import farthest_of
 
 MOST = 6  # poses of a file, spread evenly over it

@@ -92,7 +92,7 @@ def render(
         )
     pyvista = pyvista_or_refuse()
     shapes = [_in_space(panel.positions, panel.title) for panel in panels]
-    faces = [_faces(panel, len(shape)) for panel, shape in zip(panels, shapes, strict=True)]
+    faces = [_faces(panel, shape) for panel, shape in zip(panels, shapes, strict=True)]
     colours = [_colours(panel, len(shape)) for panel, shape in zip(panels, shapes, strict=True)]
     seen = list(shapes)
     if control_points is not None:
@@ -134,12 +134,14 @@ def _in_space(values: ArrayLike, what: str) -> Array:
     return np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
 
 
-def _faces(panel: Panel, count: int) -> NDArray[np.int64]:
-    """The faces of a panel, (f, 3), none for a cloud."""
+def _faces(panel: Panel, shape: Array) -> NDArray[np.int64]:
+    """The faces of a panel that have area, (f, 3); none for a cloud, or what is to be drawn as one."""
+    count = len(shape)
     faces = np.zeros((0, 3), dtype=np.int64) if panel.faces is None else np.asarray(panel.faces, dtype=np.int64)
     if faces.ndim != 2 or faces.shape[1] != 3 or (faces < 0).any() or (faces >= count).any():
         raise ArgumentError(f"{panel.title}: expected faces (f, 3) that name points 0 to {count - 1}")
-    return faces
+    a, b, c = (shape[faces[:, corner]] for corner in range(3))
+    return faces[np.cross(b - a, c - a).any(axis=1)]
 
 
 def _colours(panel: Panel, count: int) -> NDArray[np.uint8]:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from neuralmls.arrays import as_points
-from neuralmls.metrics.triangles import Array, Indices, as_surface, as_triangles, edges, normals, sum_at
+from neuralmls.arrays import as_points, as_triangles
+from neuralmls.metrics.triangles import Array, Indices, as_surface, edges, normals, sum_at
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from neuralmls.arrays import as_points
+from neuralmls.arrays import as_points, as_triangles
 from neuralmls.errors import ArgumentError
 
 Array = NDArray[np.float64]
@@ -13,25 +13,6 @@ Indices = NDArray[np.int64]
 
 # A triangle lower than this part of its longest edge has no shape to measure: single-precision files hold no more.
 THIN = 1e-6
-
-
-def as_triangles(faces: ArrayLike, count: int) -> Indices:
-    """Return triangles (f, 3) that name vertices below `count`.
-
-    Raises
-    ------
-    ArgumentError
-        They are of another shape, no whole numbers, or name other vertices.
-    """
-    found = np.asarray(faces)
-    if found.ndim != 2 or found.shape[1] != 3 or found.dtype.kind not in "iu":
-        raise ArgumentError(
-            f"faces: expected an (f, 3) array of whole numbers, found shape {found.shape}, {found.dtype}"
-        )
-    triangles = found.astype(np.int64)
-    if triangles.size and (triangles.min() < 0 or triangles.max() >= count):
-        raise ArgumentError(f"faces: expected vertices 0 to {count - 1}, found {triangles.min()} to {triangles.max()}")
-    return triangles
 
 
 def as_surface(x: ArrayLike, y: ArrayLike, faces: ArrayLike) -> tuple[Array, Array, Indices]:

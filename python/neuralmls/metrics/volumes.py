@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from neuralmls.arrays import as_points
-from neuralmls.metrics.triangles import Array, Indices, as_surface, as_triangles, places
+from neuralmls.arrays import as_points, as_triangles
+from neuralmls.metrics.triangles import Array, Indices, as_surface, places
 
 
 def volume(x: ArrayLike, faces: ArrayLike) -> float | None:

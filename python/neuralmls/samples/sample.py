@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from neuralmls.control_points import ControlPoints
 from neuralmls.errors import FileError
-from neuralmls.files import write_atomically
+from neuralmls.files import write_together
 from neuralmls.samples.parts import Part
 
 CREASE = 40.0  # degrees; faces that meet at a sharper angle are shaded apart
@@ -76,8 +76,9 @@ def write_obj(sample: Sample, path: str | os.PathLike[str]) -> None:
     if target.suffix.lower() != ".obj":
         raise FileError(f"{path}: expected a name that ends in .obj")
     library = target.with_suffix(".mtl")
-    write_atomically(library, _mtl(sample).encode())
-    write_atomically(target, _obj(sample, library.name).encode())
+    write_together(
+        {library: _mtl(sample).encode(), target: _obj(sample, library.name).encode(errors="surrogateescape")}
+    )
 
 
 def _mtl(sample: Sample) -> str:

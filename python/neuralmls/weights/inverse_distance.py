@@ -19,11 +19,11 @@ class InverseDistanceWeights:
     alpha : float > 0
         Exponent of the *squared* distance: 0.5 is 1/d.
     epsilon : float >= 0
-        Caps the weight near a control point, which then is no longer met exactly; in units of `d^(2 alpha)`.
+        Caps the weight near a control point, which then is no longer met exactly. Distances count in halves of the
+        longest side of `bounds`, so that the same epsilon means the same for a shape of any size, here and in the
+        command line.
     bounds : (2, d), optional
-        The shape's box. With it, distances are measured in halves of its longest side, so that the same
-        epsilon means the same for a shape of any size; without it, in the units of the coordinates (where epsilon
-        is 0, in halves of the longest side of the control points' box: the weights are the same).
+        The shape's box; the control points' own if not given.
 
     Raises
     ------
@@ -50,11 +50,7 @@ class InverseDistanceWeights:
         self._p.flags.writeable = False
         self.alpha = as_number("alpha", alpha, 0)
         self.epsilon = as_number("epsilon", epsilon, 0, open_low=False)
-        self._half = 1.0
-        if bounds is not None:
-            self._half = as_box(bounds, self._p.shape[1])[1]
-        elif self.epsilon == 0:  # any unit gives the same weights, and this one no overflow
-            self._half = box_around(self._p)[1]
+        self._half = (box_around(self._p) if bounds is None else as_box(bounds, self._p.shape[1]))[1]
         self.logits(self._p[:0])  # refuses what the core refuses now, not at the first use
 
     @property

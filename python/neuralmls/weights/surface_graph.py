@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from neuralmls.errors import ArgumentError, NeuralMLSError
+from neuralmls.arrays import as_triangles
+from neuralmls.errors import NeuralMLSError
 from neuralmls.placement import farthest_of
 
 Array = NDArray[np.float64]
@@ -126,12 +127,7 @@ def _merged(x: Array, faces: NDArray[Any] | None) -> tuple[Array, Indices]:
     nodes, which = np.unique(np.round(x, 7) + 0.0, axis=0, return_inverse=True)
     if faces is None or np.size(faces) == 0:
         return nodes, np.empty((0, 3), dtype=np.int64)
-    triangles = np.asarray(faces)
-    if triangles.ndim != 2 or triangles.shape[1] != 3 or triangles.dtype.kind not in "iu":
-        raise ArgumentError(f"faces: expected an (f, 3) array of integers, found {triangles.dtype} {triangles.shape}")
-    if triangles.min() < 0 or triangles.max() >= len(x):
-        raise ArgumentError(f"faces: expected vertices 0 to {len(x) - 1}, found {triangles.min()} to {triangles.max()}")
-    return nodes, which.reshape(-1)[triangles].astype(np.int64)
+    return nodes, which.reshape(-1)[as_triangles(faces, len(x))].astype(np.int64)
 
 
 def _divided(x: Array, faces: Indices) -> tuple[Array, Indices]:

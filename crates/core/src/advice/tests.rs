@@ -84,3 +84,16 @@ proptest! {
 fn no_place_is_refused() {
     assert!(Probe::new(&[0.0], 1, &[], 1.0, vec![], vec![0.0], Transform::Rigid).is_err());
 }
+
+#[test]
+fn places_lie_on_the_surface_or_are_points_of_the_cloud() {
+    let x = [0.0, 0.0, 1e6, 1.0, 0.0, 1e6, 0.0, 1.0, 1e6, 3.0, 0.0, 1e6, 0.0, 5.0, 1e6];
+    let on = places(&x, 3, &[[0, 1, 2]], 500).unwrap();
+    assert_eq!(on.len(), 1500);
+    assert!(on
+        .chunks_exact(3)
+        .all(|p| p[2] == 1e6 && p[0] >= -1e-9 && p[1] >= -1e-9 && p[0] + p[1] < 1.0 + 1e-9));
+    assert_eq!(places(&x, 3, &[], 10).unwrap(), x);
+    assert_eq!(places(&x, 3, &[], 2).unwrap(), [0.0, 0.0, 1e6, 3.0, 0.0, 1e6]);
+    assert!(places(&x, 3, &[[0, 1, 9]], 2).is_err());
+}

@@ -156,12 +156,13 @@ fn random_frames() -> Vec<(Deformer, Vec<f64>)> {
 }
 
 /// Each point by itself, in double precision from its logits.
-fn one_by_one<const D: usize>(deformer: &Deformer, q: &[f64], temperature: f64) -> (Vec<f64>, Vec<f64>) {
+fn one_by_one<const D: usize>(deformer: &Deformer, pose: Pose<'_>, temperature: f64) -> (Vec<f64>, Vec<f64>) {
     let enter = |points: &[f64]| -> Vec<[f64; D]> {
         points.chunks_exact(D).map(|point| deformer.frame.enter(point)).collect()
     };
-    let (p, q) = (enter(&deformer.p), enter(q));
-    let handles = Handles::new(&p, &q, deformer.transform);
+    let (p, q) = (enter(&deformer.p), enter(pose.q));
+    let turned = pose.turns.map_or_else(Vec::new, |turns| turned(turns, &p));
+    let handles = Handles::with_turned(&p, &q, turned, deformer.transform);
     let (x, logits, frame) = (&deformer.x, &deformer.logits, deformer.frame);
     let motion = Motion { x, logits, frame, temperature, handles, lanes: None };
     let (mut y, mut maps) = (vec![0.0; x.len()], vec![0.0; x.len() * D]);
@@ -175,8 +176,8 @@ fn frames_are_those_of_the_points_one_by_one_with_maps_and_without() {
         for t in [0.01, 0.1, 0.3, 1.0, 100.0] {
             let fast = deformer.deform(&q, t, true, &mut |_| true).unwrap();
             let (y, maps) = match deformer.dim {
-                2 => one_by_one::<2>(&deformer, &q, t),
-                _ => one_by_one::<3>(&deformer, &q, t),
+                2 => one_by_one::<2>(&deformer, (&q).into(), t),
+                _ => one_by_one::<3>(&deformer, (&q).into(), t),
             };
             let largest = maps.iter().fold(1.0, |l: f64, m| l.max(m.abs()));
             for (a, b) in fast.positions.iter().zip(&y) {
@@ -249,5 +250,57 @@ fn another_transform_gives_the_frames_of_a_deformer_of_that_transform() {
                 bound(&x, &p, 3, transform).deform(&q, 0.7, false, &mut |_| true).unwrap().positions
             );
         }
+    }
+}
+
+/// `m` turns about z by `degrees`, in 2 or 3 dimensions; every other control point says nothing.
+fn turns(m: usize, dim: usize, degrees: f64) -> Vec<f64> {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let turn =
+        if dim == 2 { vec![cos, -sin, sin, cos] } else { vec![cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0] };
+    (0..m).flat_map(|i| if i % 2 == 0 { turn.clone() } else { vec![f64::NAN; dim * dim] }).collect()
+}
+
+#[test]
+fn turned_frames_are_those_of_the_points_one_by_one() {
+    for (deformer, q) in random_frames() {
+        let turns = turns(q.len() / deformer.dim, deformer.dim, 50.0);
+        for t in [0.1, 1.0, 100.0] {
+            let pose = Pose { q: &q, turns: Some(&turns) };
+            let fast = deformer.deform(pose, t, true, &mut |_| true).unwrap();
+            let (y, maps) = match deformer.dim {
+                2 => one_by_one::<2>(&deformer, pose, t),
+                _ => one_by_one::<3>(&deformer, pose, t),
+            };
+            let largest = maps.iter().fold(1.0, |l: f64, m| l.max(m.abs()));
+            for (a, b) in fast.positions.iter().zip(&y) {
+                assert!((a - b).abs() < 1e-5 * deformer.frame.half * largest, "T = {t}: {a} {b}");
+            }
+            assert_ne!(fast.positions, deformer.deform(&q, t, false, &mut |_| true).unwrap().positions);
+        }
+    }
+}
+
+#[test]
+fn turns_that_turn_nothing_change_nothing() {
+    for (deformer, q) in random_frames() {
+        let m = q.len() / deformer.dim;
+        let none = vec![f64::NAN; m * deformer.dim * deformer.dim];
+        let silent = deformer.deform(Pose { q: &q, turns: Some(&none) }, 1.0, true, &mut |_| true).unwrap();
+        let plain = deformer.deform(&q, 1.0, true, &mut |_| true).unwrap();
+        assert_eq!((silent.positions, silent.maps), (plain.positions, plain.maps));
+        let held = turns(m, deformer.dim, 0.0);
+        let pose = Pose { q: &deformer.p, turns: Some(&held) };
+        assert_eq!(deformer.deform(pose, 1.0, true, &mut |_| true).unwrap().positions, deformer.x);
+    }
+}
+
+#[test]
+fn turns_that_do_not_fit_are_refused() {
+    let deformer = bound(&[0.0; 6], &[1.0; 3], 3, Transform::Rigid);
+    for turns in [vec![1.0; 9], vec![f64::NAN; 8]] {
+        let pose = Pose { q: &[2.0; 3], turns: Some(&turns) };
+        let error = deformer.deform(pose, 1.0, false, &mut |_| true).map(drop).unwrap_err();
+        assert!(error.to_string().starts_with("turns: "), "{error}");
     }
 }

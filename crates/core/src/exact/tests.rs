@@ -154,6 +154,23 @@ fn one_control_point_goes_where_it_is_to_go() {
 }
 
 #[test]
+fn turned_handles_arrive_too() {
+    let p = points(9, 3);
+    let q: Vec<f64> = p.iter().enumerate().map(|(at, p)| p + 0.1 * (at as f64 * 1.7).sin()).collect();
+    let (sin, cos) = 0.6f64.sin_cos();
+    let turn = [cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0];
+    let turns: Vec<f64> = (0..9).flat_map(|i| if i % 3 == 0 { turn } else { [f64::NAN; 9] }).collect();
+    for transform in ALL {
+        let handles = handles(&p, 3, 0.7, transform);
+        let aim = handles.aim(Pose { q: &q, turns: Some(&turns) }, 1.0, 1.0).unwrap();
+        let pose = Pose { q: &aim.targets, turns: Some(&turns) };
+        let landed = handles.handles.deform(pose, 1.0, false, &mut |_| true).unwrap().positions;
+        assert!(furthest(&landed, &q) < 1e-8, "{transform:?}");
+        assert!(furthest(&arrived(&handles, &aim.targets), &q) > 1e-4, "the turns are heeded");
+    }
+}
+
+#[test]
 fn a_careful_aim_is_the_aim_where_control_points_own_their_places_and_arrive() {
     let p = points(8, 3);
     let q: Vec<f64> = p.iter().enumerate().map(|(at, p)| p + 0.2 * (at as f64).cos()).collect();

@@ -11,6 +11,7 @@ mod matrix;
 mod moments;
 mod rotation;
 mod similarity;
+mod turned;
 
 pub use matrix::Matrix;
 pub use rotation::best_rotation;
@@ -18,6 +19,8 @@ pub use rotation::best_rotation;
 use crate::frame::Frame;
 use crate::softmax::Dominant;
 use moments::Moments;
+use turned::Turned;
+pub(crate) use turned::{check as check_turns, turned};
 
 /// How much the global map counts against the local one, relative to its size: enough to decide what is open, too little to
 /// be seen where anything is determined.
@@ -39,6 +42,7 @@ pub enum Transform {
 pub struct Handles<'a, const D: usize> {
     p: &'a [[f64; D]],
     q: &'a [[f64; D]],
+    turned: Vec<Turned<D>>,
     transform: Transform,
     anchor: Anchor<D>,
 }
@@ -66,15 +70,28 @@ pub struct Local<const D: usize> {
 impl<'a, const D: usize> Handles<'a, D> {
     /// Fits the anchor. `p` and `q` hold the same number of control points, at least one.
     pub fn new(p: &'a [[f64; D]], q: &'a [[f64; D]], transform: Transform) -> Self {
+        Self::with_turned(p, q, Vec::new(), transform)
+    }
+
+    /// The same with the control points of which `turned` says how they turn.
+    pub(crate) fn with_turned(
+        p: &'a [[f64; D]],
+        q: &'a [[f64; D]],
+        turned: Vec<Turned<D>>,
+        transform: Transform,
+    ) -> Self {
         debug_assert!(!p.is_empty() && p.len() == q.len());
         let equal = vec![1.0; p.len()];
         let dominant = Dominant { index: 0, second: 1.0 / p.len() as f64 };
-        let moments = Moments::new(p, q, &equal, dominant, None);
+        let mut moments = Moments::new(p, q, &equal, dominant, None);
+        let added = turned::add(&mut moments, &turned, &equal, dominant, None);
         let rotation = rotation::anchored(&moments.pq, &matrix::identity());
+        added.align(&mut moments, &rotation);
         let scale = similarity::scale(&moments, &rotation, 1.0);
-        let residuals = Moments::new(p, q, &equal, dominant, Some(&rotation));
+        let mut residuals = Moments::new(p, q, &equal, dominant, Some(&rotation));
+        turned::add(&mut residuals, &turned, &equal, dominant, Some(&rotation));
         let linear = affine::linear(&residuals, &rotation);
-        Handles { p, q, transform, anchor: Anchor { rotation, scale, linear } }
+        Handles { p, q, turned, transform, anchor: Anchor { rotation, scale, linear } }
     }
 
     /// The map that fits all control points with equal weights.
@@ -94,17 +111,25 @@ impl<'a, const D: usize> Handles<'a, D> {
         let pairs = self.p.iter().zip(self.q);
         let points =
             pairs.map(|(p, q)| std::array::from_fn(|k| if k < 3 { p[k] } else { q[k - 3] })).collect();
-        Some(lanes::LaneHandles::new(points, self.transform, anchor, frame))
+        let turned = self.turned.iter().map(|t| Turned {
+            index: t.index,
+            rotation: three(&t.rotation),
+            scale: t.scale,
+            square: t.square,
+        });
+        Some(lanes::LaneHandles::new(points, turned.collect(), self.transform, anchor, frame))
     }
 
     /// Where the point `x` goes, whose weights `relative` and `dominant` are as [`crate::softmax::relative_weights`] gives them.
     pub fn deform(&self, x: &[f64; D], relative: &[f64], dominant: Dominant) -> Local<D> {
         let base = (self.transform == Transform::Affine).then_some(&self.anchor.linear);
-        let moments = Moments::new(self.p, self.q, relative, dominant, base);
+        let mut moments = Moments::new(self.p, self.q, relative, dominant, base);
+        let added = turned::add(&mut moments, &self.turned, relative, dominant, base);
         let map = match self.transform {
             Transform::Rigid => rotation::anchored(&moments.pq, &self.anchor.rotation),
             Transform::Similarity => {
                 let rotation = rotation::anchored(&moments.pq, &self.anchor.rotation);
+                added.align(&mut moments, &rotation);
                 let scale = similarity::scale(&moments, &rotation, self.anchor.scale);
                 matrix::scaled(&rotation, scale)
             }

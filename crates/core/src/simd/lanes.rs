@@ -202,6 +202,20 @@ mod x86 {
         )* };
     }
 
+    /// The sum of eight numbers, in the order of [`Lanes::total`].
+    ///
+    /// # Safety
+    /// The machine has AVX.
+    #[inline(always)]
+    unsafe fn total(eight: __m256) -> f32 {
+        // SAFETY: as the caller promises.
+        unsafe {
+            let four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps::<1>(eight));
+            let two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+            _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)))
+        }
+    }
+
     impl Lanes for Avx2 {
         const REGISTERS: usize = 8;
         type Mask = (__m256, __m256);
@@ -283,6 +297,11 @@ mod x86 {
             // SAFETY: as above.
             unsafe { Avx2(_mm256_blendv_ps(no.0, yes.0, mask.0), _mm256_blendv_ps(no.1, yes.1, mask.1)) }
         }
+        #[inline(always)]
+        fn total(self) -> f32 {
+            // SAFETY: as above.
+            unsafe { total(_mm256_add_ps(self.0, self.1)) }
+        }
     }
 
     impl Lanes for Avx512 {
@@ -351,6 +370,13 @@ mod x86 {
         fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
             // SAFETY: as above.
             unsafe { Avx512(_mm512_mask_blend_ps(mask, no.0, yes.0)) }
+        }
+        #[inline(always)]
+        fn total(self) -> f32 {
+            // SAFETY: as above.
+            unsafe {
+                total(_mm256_add_ps(_mm512_castps512_ps256(self.0), _mm512_extractf32x8_ps::<1>(self.0)))
+            }
         }
     }
 }

@@ -28,32 +28,8 @@ pub(crate) fn multiply_add<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
 /// Defines `fn name(simd: Simd, arguments...)` that calls the kernel `body::<FMA>(arguments...)` compiled for `simd`.
 macro_rules! multiversion_loops {
     ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) = $body:ident) => {
-        $(#[$meta])*
-        #[allow(clippy::too_many_arguments)]
-        $vis fn $name(simd: $crate::simd::Simd, $($arg: $type),*) {
-            #[cfg(target_arch = "x86_64")]
-            {
-                #[target_feature(enable = "avx2,fma")]
-                #[allow(clippy::too_many_arguments)]
-                fn avx2($($arg: $type),*) {
-                    $body::<true>($($arg),*)
-                }
-                #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma")]
-                #[allow(clippy::too_many_arguments)]
-                fn avx512($($arg: $type),*) {
-                    $body::<true>($($arg),*)
-                }
-                match simd {
-                    // SAFETY: `Simd` names an instruction set only where it was detected.
-                    $crate::simd::Simd::Avx512 => return unsafe { avx512($($arg),*) },
-                    // SAFETY: as above.
-                    $crate::simd::Simd::Avx2 => return unsafe { avx2($($arg),*) },
-                    $crate::simd::Simd::Portable => {}
-                }
-            }
-            #[cfg(not(target_arch = "x86_64"))]
-            let _ = simd;
-            $body::<false>($($arg),*)
+        $crate::simd::compiled! {
+            $(#[$meta])* $vis fn $name($($arg: $type),*) = $body [false] [true] [true]
         }
     };
 }

@@ -140,10 +140,24 @@ fn check_version(root: &At<'_>) -> Result<(), Error> {
     }
 }
 
+impl Gltf {
+    /// The primitives that a node shows and that have positions.
+    fn shown(&self) -> impl Iterator<Item = &Primitive> {
+        let primitives = self.model.instances.iter().flat_map(|i| &self.model.meshes[i.mesh]);
+        primitives.filter(|primitive| primitive.position.is_some())
+    }
+
+    /// The paths of the images beside the file.
+    fn image_files(&self) -> Vec<String> {
+        let images = self.json["images"].as_array().into_iter().flatten();
+        let uris = images.filter_map(|image| image["uri"].as_str()).filter(|uri| !uri.starts_with("data:"));
+        uris.map(|uri| String::from_utf8_lossy(&percent_decoded(uri)).into_owned()).collect()
+    }
+}
+
 impl Document for Gltf {
     fn has_normals(&self) -> bool {
-        let shown = self.model.instances.iter().flat_map(|i| &self.model.meshes[i.mesh]);
-        shown.into_iter().any(|p| p.position.is_some() && (p.normal.is_some() || p.tangent.is_some()))
+        self.shown().any(|p| p.normal.is_some() || p.tangent.is_some())
     }
 
     fn named_files(&self) -> Vec<String> {
@@ -151,9 +165,19 @@ impl Document for Gltf {
             Origin::File(path) => Some(path.clone()),
             _ => None,
         });
-        let images = self.json["images"].as_array().into_iter().flatten();
-        let uris = images.filter_map(|image| image["uri"].as_str()).filter(|uri| !uri.starts_with("data:"));
-        buffers.chain(uris.map(|uri| String::from_utf8_lossy(&percent_decoded(uri)).into_owned())).collect()
+        buffers.chain(self.image_files()).collect()
+    }
+
+    fn side_files(&self, stem: &str) -> Vec<String> {
+        let Model { buffers, views, accessors, .. } = &self.model;
+        let mut moves = vec![false; buffers.storages.len()];
+        for primitive in self.shown() {
+            for accessor in [primitive.position, primitive.normal, primitive.tangent].into_iter().flatten() {
+                let buffer = accessors[accessor].buffer(views).unwrap_or(0);
+                buffers.buffers.get(buffer).into_iter().for_each(|buffer| moves[buffer.storage] = true);
+            }
+        }
+        output::side_names(self, stem, &moves)
     }
 
     fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {

@@ -144,6 +144,8 @@ impl<'a> Output<'a> {
     /// The file, and the side files that changed, called after `stem` if given.
     pub fn finish(mut self, stem: Option<&str>) -> Result<Written, Error> {
         let model = &self.gltf.model;
+        let changed: Vec<bool> = self.storages.iter().map(|bytes| matches!(bytes, Cow::Owned(_))).collect();
+        let mut names = stem.map(|stem| side_names(self.gltf, stem, &changed).into_iter());
         let mut side_files: Vec<SideFile> = Vec::new();
         let mut bin = None;
         for (s, bytes) in std::mem::take(&mut self.storages).into_iter().enumerate() {
@@ -151,11 +153,7 @@ impl<'a> Output<'a> {
             match &model.buffers.storages[s].origin {
                 Origin::Bin => bin = Some(bytes),
                 Origin::File(path) => {
-                    let name = match stem {
-                        None => path.clone(),
-                        Some(stem) if side_files.is_empty() => format!("{stem}.bin"),
-                        Some(stem) => format!("{stem}-{}.bin", side_files.len() + 1),
-                    };
+                    let name = names.as_mut().and_then(Iterator::next).unwrap_or_else(|| path.clone());
                     if name != *path {
                         for (b, _) in model.buffers.buffers.iter().enumerate().filter(|(_, b)| b.storage == s)
                         {
@@ -189,4 +187,22 @@ impl<'a> Output<'a> {
         };
         Ok(Written { bytes, side_files })
     }
+}
+
+/// What the side files of the storages that have changed are called after `stem`, in their order: `stem.bin`, `stem-2.bin` ..., but for
+/// names of files that stay as they are.
+pub(super) fn side_names(gltf: &Gltf, stem: &str, changed: &[bool]) -> Vec<String> {
+    let storages = gltf.model.buffers.storages.iter().zip(changed);
+    let files = storages.filter_map(|(storage, changed)| match &storage.origin {
+        Origin::File(path) => Some((path, *changed)),
+        _ => None,
+    });
+    let (own, kept): (Vec<_>, Vec<_>) = files.partition(|(_, changed)| *changed);
+    let images = gltf.image_files();
+    let free = |name: &String| {
+        let mut stays = kept.iter().map(|(path, _)| *path).chain(&images);
+        !stays.any(|path| path.trim_start_matches("./") == name)
+    };
+    let numbered = (2..).map(|number| format!("{stem}-{number}.bin"));
+    std::iter::once(format!("{stem}.bin")).chain(numbered).filter(free).take(own.len()).collect()
 }

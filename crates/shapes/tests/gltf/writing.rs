@@ -389,6 +389,24 @@ fn changed_buffers_beside_the_file_are_given_back_by_their_path() {
 }
 
 #[test]
+fn side_files_are_told_beforehand_and_none_takes_the_name_of_one_that_stays() {
+    let mut b = quad();
+    b.node(json!({ "mesh": 0 }));
+    let mut json: Value = serde_json::from_str(&b.text()).unwrap();
+    json["buffers"].as_array_mut().unwrap().push(json!({ "uri": "./bent.bin", "byteLength": 0 }));
+    json["images"] = json!([{ "uri": "bent-2.bin" }]);
+    let shape = Shape::read(json.to_string().into_bytes(), Format::Gltf, &|_| Ok(b.bin.clone())).unwrap();
+    for (stem, name) in [("bent", "bent-3.bin"), ("other", "other.bin"), ("shape", "shape.bin")] {
+        let written = shape.write_as(&bent(shape.positions()), None, Some(stem)).unwrap();
+        assert_eq!(written.side_files.iter().map(|file| &file.name[..]).collect::<Vec<_>>(), [name]);
+        assert_eq!(shape.side_files(stem), [name]);
+        let json: Value = serde_json::from_slice(&written.bytes).unwrap();
+        assert_eq!([&json["buffers"][0]["uri"], &json["buffers"][1]["uri"]], [name, "./bent.bin"]);
+    }
+    assert!(read_glb(&b.glb()).unwrap().side_files("bent").is_empty());
+}
+
+#[test]
 fn embedded_buffers_are_embedded_again() {
     use base64::Engine;
     let mut b = quad();

@@ -27,7 +27,7 @@ def functions(lab: Lab, p: Array) -> dict[str, Weights]:
     raw = [[-1.0], [1.0]]  # the published script does not normalise the line
     return {
         "neural": NeuralWeights.fit(p, bounds=raw, width=lab.width, steps=50 if lab.quick else 500),
-        "classic": InverseDistanceWeights(p, alpha=1.0, epsilon=1e-6),
+        "classic": InverseDistanceWeights(p, alpha=1.0, epsilon=1e-6, bounds=raw),
     }
 
 

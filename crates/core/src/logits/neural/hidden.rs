@@ -122,7 +122,13 @@ impl Hidden {
                 total.0.iter_mut().zip(&other.0).for_each(|(total, other)| *total += other);
             }
         }
-        (0..self.inputs.len() * m).map(|at| total[at / m / WIDTH * m + at % m].0[at / m % WIDTH]).collect()
+        let mut gradient = vec![0.0; self.inputs.len() * m];
+        for (rows, total) in gradient.chunks_mut(WIDTH * m).zip(total.chunks_exact(m)) {
+            for (lane, row) in rows.chunks_exact_mut(m).enumerate() {
+                row.iter_mut().zip(total).for_each(|(to, total)| *to = total.0[lane]);
+            }
+        }
+        gradient
     }
 
     /// Adam with the gradient `error input^T`, and `W next_input` with the new weights: outputs x m.
@@ -195,30 +201,48 @@ multiversion! {
     fn product(state: &[Aligned], row: usize, input: &[Aligned], m: usize, z: &mut [f32]) = product_body
 }
 
-/// `z = W input`, 4 rows and 4 control points at a time.
+/// `z = W input`, 4 rows and some control points at a time: as many as there are registers for.
 #[inline(always)]
 fn product_body<L: Lanes>(state: &[Aligned], row: usize, input: &[Aligned], m: usize, z: &mut [f32]) {
+    if L::REGISTERS >= 32 {
+        product_of::<L, 5>(state, row, input, m, z);
+    } else {
+        product_of::<L, 4>(state, row, input, m, z);
+    }
+}
+
+#[inline(always)]
+fn product_of<L: Lanes, const POINTS: usize>(
+    state: &[Aligned],
+    row: usize,
+    input: &[Aligned],
+    m: usize,
+    z: &mut [f32],
+) {
     const TILE: usize = 4;
     let rows = z.len() / m;
     for r in (0..rows).step_by(TILE) {
         // A last, smaller tile repeats its last row and point: the same sum is written again.
         let tile_rows: [usize; TILE] = std::array::from_fn(|k| (r + k).min(rows - 1));
         let weight = tile_rows.map(|r| &state[r * 3 * row..][..row]);
-        for i in (0..m).step_by(TILE) {
-            let points: [usize; TILE] = std::array::from_fn(|k| (i + k).min(m - 1));
-            let mut sums = [[L::splat(0.0); TILE]; TILE];
+        for i in (0..m).step_by(POINTS) {
+            let points: [usize; POINTS] = std::array::from_fn(|k| (i + k).min(m - 1));
+            let mut sums = [[L::splat(0.0); POINTS]; TILE];
             for (c, input) in input.chunks_exact(m).enumerate() {
-                let x = points.map(|i| L::load(&input[i].0));
+                let mut x = [L::splat(0.0); POINTS];
+                for i in 0..POINTS {
+                    x[i] = L::load(&input[points[i]].0);
+                }
                 for k in 0..TILE {
                     let w = L::load(&weight[k][c].0);
-                    for i in 0..TILE {
+                    for i in 0..POINTS {
                         sums[k][i] = w.mul_add(x[i], sums[k][i]);
                     }
                 }
             }
-            for (r, sums) in tile_rows.iter().zip(sums) {
-                for (i, sum) in points.iter().zip(sums) {
-                    z[r * m + i] = sum.total();
+            for k in 0..TILE {
+                for i in 0..POINTS {
+                    z[tile_rows[k] * m + points[i]] = sums[k][i].total();
                 }
             }
         }

@@ -3,6 +3,7 @@
 //! ```text
 //! moments      C, p*, q* of each lane: one product of its weights with the control points relative to its dominant one
 //! rotation     the rotation that C and the anchor ask for: Horn's quaternion
+//! turned       what those of them add that carry a rotation
 //! linear       scale, or affine map
 //! landing      y = x + (M - I)(x - p*) + (q* - p*)
 //! ```
@@ -22,8 +23,10 @@
 mod linear;
 mod moments;
 mod rotation;
+mod turned;
 
 use super::matrix::{identity, Matrix};
+use super::turned::Turned;
 use super::{Anchor, Transform, ANCHOR_WEIGHT};
 use crate::frame::Frame;
 use crate::simd::loops::{multiply_add, multiply_add_f32, multiversion_loops};
@@ -44,6 +47,7 @@ pub(crate) struct LaneHandles {
     frame: Frame,
     /// `p_i`, `q_i`, in the frame.
     points: Vec<[f64; 6]>,
+    turned: Vec<Turned<3>>,
 }
 
 /// Points of a batch in the order of memory, with room for what becomes of them.
@@ -65,6 +69,7 @@ pub(crate) struct Scratch {
     moment: [Lane; 9],
     /// The moments of p with itself: xx, xy, xz, yy, yz, zz (affine), or their trace alone (similarity).
     extent: [Lane; 6],
+    added: turned::Added,
     p_mean: [Lane; 3],
     shift: [Lane; 3],
     /// A, its determinant, the length of its cofactors, the root, the slope there: see [`rotation`].
@@ -85,6 +90,7 @@ impl Scratch {
             sums: moments::Accumulator::ZERO,
             moment,
             extent,
+            added: turned::Added::ZERO,
             p_mean: [ZERO; 3],
             shift: [ZERO; 3],
             turn,
@@ -100,8 +106,14 @@ impl Scratch {
 }
 
 impl LaneHandles {
-    pub(crate) fn new(points: Vec<[f64; 6]>, transform: Transform, anchor: Anchor<3>, frame: Frame) -> Self {
-        LaneHandles { simd: Simd::detect(), transform, anchor, frame, points }
+    pub(crate) fn new(
+        points: Vec<[f64; 6]>,
+        turned: Vec<Turned<3>>,
+        transform: Transform,
+        anchor: Anchor<3>,
+        frame: Frame,
+    ) -> Self {
+        LaneHandles { simd: Simd::detect(), transform, anchor, frame, points, turned }
     }
 
     /// Deforms at most 64 points, whose weights are in `blocks`; [`Scratch::unsound`] then has the lanes to do again.
@@ -127,8 +139,11 @@ impl LaneHandles {
                 Transform::Similarity => moments::similarity(self.simd, rows, &self.points, block, scratch),
                 Transform::Affine => moments::affine(self.simd, rows, &self.points, linear, block, scratch),
             }
+            if !self.turned.is_empty() {
+                turned::add(self.simd, rows, &self.turned, self.transform, linear, block, scratch);
+            }
         }
-        finish(self.simd, self.transform, &self.anchor, scratch);
+        finish(self.simd, self.transform, &self.anchor, !self.turned.is_empty(), scratch);
         land(self.simd, &self.frame, scratch, x, y);
         for (lane, map) in maps.chunks_exact_mut(9).enumerate() {
             let identity: Matrix<3> = identity();
@@ -141,16 +156,24 @@ impl LaneHandles {
 
 multiversion_loops! {
     /// From moments to `M - I`.
-    fn finish(transform: Transform, anchor: &Anchor<3>, scratch: &mut Scratch) = finish_body
+    fn finish(transform: Transform, anchor: &Anchor<3>, turned: bool, scratch: &mut Scratch) = finish_body
 }
 
 #[inline(always)]
-fn finish_body<const FMA: bool>(transform: Transform, anchor: &Anchor<3>, scratch: &mut Scratch) {
-    let Scratch { moment, extent, turn, change, sound, .. } = scratch;
+fn finish_body<const FMA: bool>(
+    transform: Transform,
+    anchor: &Anchor<3>,
+    turned: bool,
+    scratch: &mut Scratch,
+) {
+    let Scratch { moment, extent, added, turn, change, sound, .. } = scratch;
     match transform {
         Transform::Rigid => rotation::rotations::<FMA>(moment, &anchor.rotation, turn, change, sound),
         Transform::Similarity => {
             rotation::rotations::<FMA>(moment, &anchor.rotation, turn, change, sound);
+            if turned {
+                turned::align::<FMA>(added, change, moment);
+            }
             linear::scale::<FMA>(moment, &extent[0], change, sound);
         }
         Transform::Affine => linear::affine::<FMA>(moment, extent, &anchor.linear, change, sound),

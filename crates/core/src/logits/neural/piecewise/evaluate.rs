@@ -1,10 +1,8 @@
 //! The walk over the points' tree.
 
-use std::sync::Mutex;
-
-use super::columns::{sort, Sorted};
+use super::columns::sort;
 use super::leaf::{self, Activations};
-use super::node::Part;
+use super::node::{Level, Part};
 use super::rows::Rows;
 use super::whole::{Prepared, Whole, PACK};
 use crate::error::Error;
@@ -15,13 +13,18 @@ use crate::simd::{Aligned, Simd, WIDTH};
 use crate::tree::{Node, Order, PointTree, LEAF, LEAF_BLOCKS};
 
 /// Nodes of this depth are made from the whole network.
-const DEPTH: usize = 5;
+const DEPTH: usize = 4;
+/// Levels of the tree from a node to those that are made from it; at the bottom there may be one more. A node in between would cost
+/// more than what it saves those below.
+const STEP: u32 = 2;
 /// Bytes of one such node at most; where it might be more, its halves are made instead.
 const MOST_PART: usize = 8 << 20;
 /// Bytes of those that one task makes.
 const MOST_GROUP: usize = 8 << 20;
 /// Nodes that read rows of layer 2 one after the other, while they are in the cache.
 const GROUP: usize = 8;
+/// Rows of logits, which may be anywhere in memory, that are asked for at a time while a leaf is made. More would be waited for.
+const AHEAD: usize = LEAF / 4;
 
 /// Writes the logits of the tree's points row by row, n x m, in their own order or in the tree's. The network has no Fourier
 /// features.
@@ -43,7 +46,6 @@ pub(crate) fn write_logits(
         tree,
         order,
         logits: SharedRows::new(logits, network.outputs()),
-        workspaces: Mutex::default(),
     };
     walk.all(progress)
 }
@@ -55,12 +57,11 @@ struct Walk<'a> {
     tree: &'a PointTree,
     order: Order,
     logits: SharedRows<'a>,
-    workspaces: Mutex<Vec<Workspace>>,
 }
 
 /// What one task works with.
 #[derive(Default)]
-struct Workspace {
+pub(super) struct Workspace {
     /// Nodes that are made from the whole network, and rows of it.
     tops: Vec<Level>,
     rows: Rows,
@@ -69,17 +70,11 @@ struct Workspace {
     activations: Activations,
 }
 
-#[derive(Default)]
-struct Level {
-    part: Part,
-    sorted: Sorted,
-}
-
 impl Walk<'_> {
     fn all(&self, progress: &mut Progress<'_>) -> Result<(), Error> {
         let (mut tops, mut dense) = (Vec::new(), Vec::new());
         self.find_tops(self.tree.root(), 0, &mut Level::default(), &mut tops, &mut dense);
-        let most = tops.len().div_ceil(2 * threads()).min(GROUP);
+        let most = tops.len().div_ceil(threads()).min(GROUP);
         let mut groups = Vec::new();
         let mut rest = &tops[..];
         while !rest.is_empty() {
@@ -141,65 +136,76 @@ impl Walk<'_> {
         tops.resize_with(nodes.len().max(tops.len()), Level::default);
         let region = |at: usize| self.tree.region(nodes[at].0);
         let panels = self.whole.rows().div_ceil(WIDTH);
-        for (at, Level { part, sorted }) in tops[..nodes.len()].iter_mut().enumerate() {
-            part.begin(self.simd, &self.whole.part, region(at), sorted, panels);
+        for (at, level) in tops[..nodes.len()].iter_mut().enumerate() {
+            level.begin(self.simd, &self.whole.part, region(at), panels);
         }
         for first in (0..panels).step_by(PACK) {
             if stop() {
                 return;
             }
-            let (rows, panels) = self.whole.panels(self.network, first, rows);
-            for (at, Level { part, sorted }) in tops[..nodes.len()].iter_mut().enumerate() {
-                part.absorb(self.simd, &self.whole.heads, rows, panels.clone(), region(at), sorted);
+            let rows = self.whole.panels(self.network, first, rows);
+            for (at, level) in tops[..nodes.len()].iter_mut().enumerate() {
+                level.absorb(self.simd, &self.whole.heads, rows, region(at));
             }
         }
-        for_each_block(&mut tops[..nodes.len()], 1, |at, top| {
+        let mut tasks = Vec::new();
+        for ((node, _), Level { part, .. }) in nodes.iter().zip(&tops[..]) {
+            below(*node, |child| tasks.push((child, part)));
+        }
+        for_each_block(&mut tasks, 1, |_, task| {
             let mut workspace = self.workspace();
             let Workspace { levels, activations, .. } = &mut workspace;
             levels.resize_with(usize::BITS as usize, Level::default);
-            self.descend(nodes[at].0, &top[0].part, levels, activations, stop);
+            let (node, part) = task[0];
+            self.descend(node, part, levels, activations, stop);
             self.keep(workspace);
         });
         self.keep(workspace);
     }
 
     fn workspace(&self) -> Workspace {
-        self.workspaces.lock().expect("no task panics").pop().unwrap_or_default()
+        self.whole.workspaces.lock().expect("no task panics").pop().unwrap_or_default()
     }
 
     fn keep(&self, workspace: Workspace) {
-        self.workspaces.lock().expect("no task panics").push(workspace);
+        self.whole.workspaces.lock().expect("no task panics").push(workspace);
     }
 
+    /// Makes a node from the one above it, `parent`, and evaluates its points.
     fn descend(
         &self,
         node: Node,
-        part: &Part,
+        parent: &Part,
         levels: &mut [Level],
         activations: &mut Activations,
         stop: &(dyn Fn() -> bool + Sync),
     ) {
-        let Some(halves) = node.halves() else {
-            return self.leaf(node, part, activations);
-        };
+        let (level, levels) =
+            levels.split_first_mut().expect("a tree has fewer levels than a number has bits");
+        if node.count == 1 {
+            return self.leaf(node, parent, level, activations);
+        }
         if stop() {
             return;
         }
-        let (Level { part: child, sorted }, levels) =
-            levels.split_first_mut().expect("a tree has fewer levels than a number has bits");
-        for half in halves {
-            let region = self.tree.region(half);
-            child.begin(self.simd, part, region, sorted, part.rows.panels());
-            child.absorb(self.simd, &self.whole.heads, &part.rows, 0..part.rows.panels(), region, sorted);
-            self.descend(half, child, levels, activations, stop);
-        }
+        let region = self.tree.region(node);
+        level.begin(self.simd, parent, region, parent.rows.panels());
+        level.absorb(self.simd, &self.whole.heads, parent.rows.all(), region);
+        below(node, |child| self.descend(child, &level.part, levels, activations, stop));
     }
 
-    fn leaf(&self, node: Node, part: &Part, activations: &mut Activations) {
+    fn leaf(&self, node: Node, parent: &Part, level: &mut Level, activations: &mut Activations) {
         let first = node.first * LEAF;
         let rows = self.order.rows(self.tree, first..(first + LEAF).min(self.tree.len()));
-        // They may be anywhere in memory: they are on their way while the first points are evaluated.
-        rows.clone().for_each(|row| self.logits.prefetch(row));
+        let mut ahead = rows.clone();
+        let mut prefetch = || ahead.by_ref().take(AHEAD).for_each(|row| self.logits.prefetch(row));
+        let (region, parent_rows) = (self.tree.region(node), parent.rows.all());
+        prefetch();
+        level.begin(self.simd, parent, region, 0);
+        prefetch();
+        level.resolve(self.simd, &self.whole.heads, parent_rows, region);
+        prefetch();
+        prefetch();
         // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
         let mut rows = rows.map(|row| unsafe { self.logits.row(row) });
         let mut logits: [&mut [f32]; LEAF] = std::array::from_fn(|_| rows.next().unwrap_or_default());
@@ -209,7 +215,15 @@ impl Walk<'_> {
         for (block, x) in x.iter_mut().enumerate() {
             *x = self.tree.block(first + WIDTH * block);
         }
-        leaf::evaluate(self.simd, part, &self.whole.heads, x, activations, &mut logits[..count]);
+        leaf::evaluate(
+            self.simd,
+            level,
+            parent_rows,
+            &self.whole.heads,
+            x,
+            activations,
+            &mut logits[..count],
+        );
     }
 
     fn dense(&self, node: Node) {
@@ -218,4 +232,16 @@ impl Walk<'_> {
         // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
         unsafe { dense::evaluate_places(self.network, self.tree, self.order, places, &self.logits) }
     }
+}
+
+/// The nodes that are made from `node`; a leaf is its own.
+fn below(node: Node, mut each: impl FnMut(Node)) {
+    fn walk(node: Node, levels: u32, each: &mut dyn FnMut(Node)) {
+        match node.halves() {
+            Some(halves) if levels > 0 => halves.into_iter().for_each(|half| walk(half, levels - 1, each)),
+            _ => each(node),
+        }
+    }
+    let levels = node.count.next_power_of_two().ilog2();
+    walk(node, if levels <= STEP + 1 { levels } else { STEP }, &mut each);
 }

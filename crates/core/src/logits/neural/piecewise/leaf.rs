@@ -3,8 +3,9 @@
 //! Neurons are evaluated with points in lanes, some rows of layer 2 and all points at a time, so that a weight that was loaded
 //! serves them all. Logits are added up with outputs in lanes, some points at a time: so they come out point by point.
 
-use super::node::{Heads, Part};
-use super::rows::loads;
+use super::columns::Term;
+use super::node::{Heads, Level};
+use super::rows::{loads, Block, Row};
 use crate::simd::{multiversion, Aligned, Lanes, WIDTH};
 use crate::tree::LEAF_BLOCKS;
 
@@ -26,9 +27,11 @@ pub(super) struct Activations {
 }
 
 multiversion! {
-    /// Evaluates `part` at the points `x` of a leaf, and writes the logits of each into its row.
+    /// Evaluates what is left over a leaf at its points `x`, and writes the logits of each into its row. The weights of its open
+    /// rows, which are needed but once, are read where they are: among the parent's.
     pub(super) fn evaluate(
-        part: &Part,
+        leaf: &Level,
+        parent: Block<'_>,
         heads: &Heads,
         x: &[[Aligned; 3]],
         activations: &mut Activations,
@@ -38,25 +41,26 @@ multiversion! {
 
 #[inline(always)]
 fn evaluate_body<L: Lanes>(
-    part: &Part,
+    leaf: &Level,
+    parent: Block<'_>,
     heads: &Heads,
     x: &[[Aligned; 3]],
     activations: &mut Activations,
     logits: &mut [&mut [f32]],
 ) {
-    let (columns, rows) = (part.columns.len, part.rows.ids.len());
+    let (columns, rows) = (leaf.sorted.open().len(), leaf.bounded.open.len());
     let Activations { hidden: h, rows: z } = activations;
     h.resize(columns.max(h.len()), NO_POINTS);
     z.resize(rows.next_multiple_of(ROWS).max(z.len()), NO_POINTS);
     let (h, z) = (&mut h[..columns], &mut z[..rows.next_multiple_of(ROWS)]);
     if L::REGISTERS >= 32 && x.len() == LEAF_BLOCKS {
-        neurons::<L, LEAF_BLOCKS>(part, x, 0, h, z);
+        neurons::<L, LEAF_BLOCKS>(leaf, parent, x, 0, h, z);
     } else {
-        (0..x.len()).for_each(|block| neurons::<L, 1>(part, x, block, h, z));
+        (0..x.len()).for_each(|block| neurons::<L, 1>(leaf, parent, x, block, h, z));
     }
 
-    let sources = Sources { part, heads, x, hidden: h, rows: z };
-    for (group, output) in part.output.iter().enumerate() {
+    let sources = Sources { leaf, heads, x, hidden: h, rows: z };
+    for (group, output) in leaf.part.output.iter().enumerate() {
         let output = loads::<L>(output);
         let mut first = 0;
         while first < logits.len() {
@@ -74,7 +78,8 @@ fn evaluate_body<L: Lanes>(
 /// The neurons at `B` blocks of points.
 #[inline(always)]
 fn neurons<L: Lanes, const B: usize>(
-    part: &Part,
+    leaf: &Level,
+    parent: Block<'_>,
     x: &[[Aligned; 3]],
     first: usize,
     hidden: &mut [Points],
@@ -86,29 +91,32 @@ fn neurons<L: Lanes, const B: usize>(
             points[b][k] = L::load(&x[first + b][k].0);
         }
     }
-    for (planes, hidden) in part.columns.planes.iter().zip(hidden.chunks_mut(WIDTH)) {
+    for (planes, hidden) in leaf.part.columns.planes.iter().zip(hidden.chunks_mut(WIDTH)) {
         for (j, hidden) in hidden.iter_mut().enumerate() {
             for b in 0..B {
                 hidden[first + b] = Aligned(affine(planes, j, points[b]).max(L::splat(0.0)).store());
             }
         }
     }
-    for (index, out) in rows.chunks_exact_mut(ROWS).enumerate() {
-        let (panel, place) = (index * ROWS / WIDTH, index * ROWS % WIDTH);
+    let (open, affines) = (leaf.sorted.open(), &leaf.bounded.affine);
+    for (which, out) in leaf.bounded.open.chunks(ROWS).zip(rows.chunks_exact_mut(ROWS)) {
+        // A shorter last chunk repeats its last row, which nobody asks for.
+        let (mut weights, mut lanes) = ([parent.panel(0); ROWS], [0; ROWS]);
         let mut sum = [[L::splat(0.0); B]; ROWS];
         for r in 0..ROWS {
+            let Row { panel, lane, .. } = which[r.min(which.len() - 1)];
+            (weights[r], lanes[r]) = (parent.panel(panel as usize), lane as usize % WIDTH);
             for b in 0..B {
-                sum[r][b] = affine(&part.rows.affine[panel], place + r, points[b]);
+                sum[r][b] = affine(&affines[panel as usize], lanes[r], points[b]);
             }
         }
-        for (weights, hidden) in part.rows.panel(panel).iter().zip(&*hidden) {
-            let weights = &weights.0[place..place + ROWS];
+        for (Term { column, .. }, hidden) in open.iter().zip(&*hidden) {
             let mut inputs = [L::splat(0.0); B];
             for b in 0..B {
                 inputs[b] = L::load(&hidden[first + b].0);
             }
             for r in 0..ROWS {
-                let weight = L::splat(weights[r]);
+                let weight = L::splat(weights[r][*column as usize].0[lanes[r]]);
                 for b in 0..B {
                     sum[r][b] = weight.mul_add(inputs[b], sum[r][b]);
                 }
@@ -132,7 +140,7 @@ fn affine<L: Lanes>(maps: &[Aligned; 4], r: usize, x: [L; 3]) -> L {
 
 /// What logits are made of.
 struct Sources<'a> {
-    part: &'a Part,
+    leaf: &'a Level,
     heads: &'a Heads,
     x: &'a [[Aligned; 3]],
     hidden: &'a [Points],
@@ -149,16 +157,16 @@ impl Sources<'_> {
         first: usize,
         logits: &mut [&mut [f32]],
     ) -> usize {
-        let (part, groups) = (self.part, self.heads.groups);
+        let (leaf, groups) = (self.leaf, self.heads.groups);
         let (block, lane) = (first / WIDTH, first % WIDTH);
         let mut sum = [output[3]; P];
         for k in 0..3 {
             add(&mut sum, output[k], &self.x[block][k], lane);
         }
-        for (weights, hidden) in part.through.chunks_exact(groups).zip(self.hidden) {
+        for (weights, hidden) in leaf.part.through.chunks_exact(groups).zip(self.hidden) {
             add(&mut sum, L::load(&weights[group].0), &hidden[block], lane);
         }
-        for (id, row) in part.rows.ids.iter().zip(self.rows) {
+        for (Row { id, .. }, row) in leaf.bounded.open.iter().zip(self.rows) {
             add(&mut sum, L::load(&self.heads.weights[*id as usize * groups + group].0), &row[block], lane);
         }
         for p in 0..P {

@@ -26,6 +26,8 @@
 mod bounds;
 mod columns;
 mod evaluate;
+mod fold;
+mod keep;
 mod leaf;
 mod node;
 mod rows;

@@ -1,9 +1,11 @@
 //! Layer 2 over a box: its rows' affine parts, and bounds on what they can be.
 
-use super::bounds::{bounds, classify};
-use super::columns::Term;
+use std::ops::Range;
+
+use super::bounds::{bounds, classify, lanes_of};
+use super::columns::Sorted;
 use crate::memory::filled;
-use crate::simd::{Aligned, Lanes};
+use crate::simd::{multiversion, Aligned, Lanes, WIDTH};
 use crate::tree::Region;
 
 /// Rows of layer 2, in panels of 16.
@@ -53,43 +55,103 @@ impl Rows {
         }
     }
 
-    /// The weights of one panel.
-    #[inline(always)]
-    pub(super) fn panel(&self, panel: usize) -> &[Aligned] {
-        &self.matrix[panel * self.columns..(panel + 1) * self.columns]
-    }
-
     /// The weights of the last panel.
     #[inline(always)]
     pub(super) fn last_panel(&mut self) -> &mut [Aligned] {
         let end = self.panels() * self.columns;
         &mut self.matrix[end - self.columns..end]
     }
+
+    /// Some panels.
+    pub(super) fn block(&self, panels: Range<usize>) -> Block<'_> {
+        Block {
+            columns: self.columns,
+            ids: &self.ids[WIDTH * panels.start..self.ids.len().min(WIDTH * panels.end)],
+            affine: &self.affine[panels.clone()],
+            matrix: &self.matrix[panels.start * self.columns..panels.end * self.columns],
+        }
+    }
+
+    /// All panels.
+    pub(super) fn all(&self) -> Block<'_> {
+        self.block(0..self.panels())
+    }
 }
 
-/// Panels over a box.
-pub(super) struct Bounded<const P: usize> {
-    /// The affine parts of their rows, with the columns that are on.
-    pub affine: [[Aligned; 4]; P],
-    /// Which of their rows are on, and which open.
-    pub on: [u32; P],
-    pub open: [u32; P],
+/// Some panels of [`Rows`].
+#[derive(Clone, Copy)]
+pub(super) struct Block<'a> {
+    pub columns: usize,
+    ids: &'a [u32],
+    affine: &'a [[Aligned; 4]],
+    matrix: &'a [Aligned],
 }
 
-/// Folds the columns that are on into the affine parts of `P` panels, and bounds their rows over the box.
+impl<'a> Block<'a> {
+    /// The weights of one panel.
+    #[inline(always)]
+    pub(super) fn panel(&self, panel: usize) -> &'a [Aligned] {
+        &self.matrix[panel * self.columns..][..self.columns]
+    }
+}
+
+/// One row of a [`Block`].
+#[derive(Clone, Copy)]
+pub(super) struct Row {
+    pub panel: u32,
+    pub lane: u32,
+    /// Which one of the network's it is.
+    pub id: u32,
+}
+
+/// What the rows of a block are in a child's box.
+#[derive(Default)]
+pub(super) struct Bounded {
+    /// The affine parts of all panels, with the columns that are on.
+    pub affine: Vec<[Aligned; 4]>,
+    /// Which rows are on, and which open; the others are off.
+    pub on: Vec<Row>,
+    pub open: Vec<Row>,
+}
+
+multiversion! {
+    /// Folds the columns that are on into the affine parts of the block's rows, and bounds the rows over the box.
+    pub(super) fn bound(block: Block<'_>, sorted: &Sorted, region: &Region, bounded: &mut Bounded) = bound_body
+}
+
 #[inline(always)]
-pub(super) fn bound<L: Lanes, const P: usize>(
-    matrix: [&[Aligned]; P],
-    affine: [&[Aligned; 4]; P],
-    on: &[Term],
-    open: &[Term],
+fn bound_body<L: Lanes>(block: Block<'_>, sorted: &Sorted, region: &Region, bounded: &mut Bounded) {
+    bounded.affine.clear();
+    bounded.on.clear();
+    bounded.open.clear();
+    let (mut p, panels) = (0, block.affine.len());
+    // Several panels at a time, so that there are more sums than an addition takes cycles: as many as there are registers for.
+    while p < panels {
+        p += match panels - p {
+            4 | 6.. if L::REGISTERS >= 32 => bound_panels::<L, 4>(block, p, sorted, region, bounded),
+            3 | 5 if L::REGISTERS >= 32 => bound_panels::<L, 3>(block, p, sorted, region, bounded),
+            1 => bound_panels::<L, 1>(block, p, sorted, region, bounded),
+            _ => bound_panels::<L, 2>(block, p, sorted, region, bounded),
+        };
+    }
+}
+
+/// The panels from `first` on, `P` of them, which it returns.
+#[inline(always)]
+fn bound_panels<L: Lanes, const P: usize>(
+    block: Block<'_>,
+    first: usize,
+    sorted: &Sorted,
     region: &Region,
-) -> Bounded<P> {
+    bounded: &mut Bounded,
+) -> usize {
+    let mut matrix = [block.panel(first); P];
     let mut maps = [[L::splat(0.0); 4]; P];
     for p in 0..P {
-        maps[p] = loads(affine[p]);
+        matrix[p] = block.panel(first + p);
+        maps[p] = loads(&block.affine[first + p]);
     }
-    for term in on {
+    for term in sorted.on() {
         let map = splats::<L>(&term.map);
         for p in 0..P {
             let weights = L::load(&matrix[p][term.column as usize].0);
@@ -98,14 +160,15 @@ pub(super) fn bound<L: Lanes, const P: usize>(
             }
         }
     }
-    let mut result = Bounded { affine: [[Aligned::ZERO; 4]; P], on: [0; P], open: [0; P] };
     for p in 0..P {
+        let mut affine = [Aligned::ZERO; 4];
         for k in 0..4 {
-            result.affine[p][k] = Aligned(maps[p][k].store());
+            affine[k] = Aligned(maps[p][k].store());
         }
+        bounded.affine.push(affine);
     }
     let mut spreads = [L::splat(0.0); P];
-    for term in open {
+    for term in sorted.open() {
         let map = splats::<L>(&term.map);
         let spread = L::splat(term.spread);
         for p in 0..P {
@@ -118,9 +181,15 @@ pub(super) fn bound<L: Lanes, const P: usize>(
     }
     for p in 0..P {
         let (lower, upper) = bounds(maps[p], spreads[p], region);
-        [result.on[p], result.open[p]] = classify(lower, upper);
+        let [on, open] = classify(lower, upper);
+        // The last panel may have lanes without rows.
+        let ids = &block.ids[WIDTH * (first + p)..];
+        let rows = u32::MAX >> (32 - WIDTH.min(ids.len()));
+        let row = |lane: usize| Row { panel: (first + p) as u32, lane: lane as u32, id: ids[lane] };
+        bounded.on.extend(lanes_of(on & rows).map(row));
+        bounded.open.extend(lanes_of(open & rows).map(row));
     }
-    result
+    P
 }
 
 /// Four registers from memory. (An `array::map` would be a call, outside of the instruction set.)

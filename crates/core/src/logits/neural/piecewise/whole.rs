@@ -1,11 +1,11 @@
 //! The whole network, laid out as a node that has everything open.
 
-use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 
 use super::columns::Columns;
+use super::evaluate::Workspace;
 use super::node::{Heads, Part};
-use super::rows::Rows;
+use super::rows::{Block, Rows};
 use crate::logits::neural::network::Network;
 use crate::simd::{Aligned, WIDTH};
 
@@ -20,6 +20,8 @@ pub(super) struct Whole {
     /// needed.
     pub part: Part,
     pub heads: Heads,
+    /// What evaluations work with; the next one finds it.
+    pub workspaces: Mutex<Vec<Workspace>>,
 }
 
 /// What the first evaluation of a network lays out for all later ones. It is no part of what the network is.
@@ -83,7 +85,7 @@ impl Whole {
             }
         }
         let part = Part { columns, output, ..Part::default() };
-        let mut whole = Whole { part, heads: Heads { groups, weights } };
+        let mut whole = Whole { part, heads: Heads { groups, weights }, workspaces: Mutex::default() };
         if size_of_val(&layer2.weight[..]) <= MOST_KEPT {
             let mut packed = Rows::default();
             pack(network, 0, rows.div_ceil(WIDTH), &mut packed);
@@ -98,18 +100,13 @@ impl Whole {
     }
 
     /// Rows of layer 2 from panel `first` on, [`PACK`] panels of them or what is left: laid out already, or now, in `scratch`.
-    pub(super) fn panels<'a>(
-        &'a self,
-        network: &Network,
-        first: usize,
-        scratch: &'a mut Rows,
-    ) -> (&'a Rows, Range<usize>) {
+    pub(super) fn panels<'a>(&'a self, network: &Network, first: usize, scratch: &'a mut Rows) -> Block<'a> {
         let count = PACK.min(self.rows().div_ceil(WIDTH) - first);
         if self.part.rows.panels() > 0 {
-            return (&self.part.rows, first..first + count);
+            return self.part.rows.block(first..first + count);
         }
         pack(network, first, count, scratch);
-        (scratch, 0..count)
+        scratch.all()
     }
 }
 

@@ -1,0 +1,54 @@
+//! Control points spread over a shape.
+
+use neuralmls_core::placement;
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use crate::errors::from_core;
+use crate::progress::run;
+
+fn points(py: Python<'_>, numbers: Vec<f64>, dim: usize) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let rows = numbers.len() / dim;
+    PyArray1::from_vec(py, numbers).reshape([rows, dim])
+}
+
+/// Places spread over points n x d and triangles f x 3 of them: count x d.
+#[pyfunction]
+pub(crate) fn farthest_points<'py>(
+    py: Python<'py>,
+    x: PyReadonlyArray2<'py, f64>,
+    faces: PyReadonlyArray2<'py, u32>,
+    count: usize,
+    seed: u64,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let (dim, x) = (x.shape()[1], x.as_slice()?);
+    let (faces, _) = faces.as_slice()?.as_chunks::<3>();
+    points(py, run(py, None, |report| placement::farthest_points(x, dim, faces, count, seed, report))?, dim)
+}
+
+/// The indices of points n x d that are spread evenly, at most `count`.
+#[pyfunction]
+pub(crate) fn farthest_of<'py>(
+    py: Python<'py>,
+    x: PyReadonlyArray2<'py, f64>,
+    count: usize,
+) -> PyResult<Bound<'py, PyArray1<i64>>> {
+    let (dim, x) = (x.shape()[1], x.as_slice()?);
+    let chosen = run(py, None, |report| placement::farthest_of(x, dim, count, report))?;
+    Ok(PyArray1::from_iter(py, chosen.into_iter().map(|index| index as i64)))
+}
+
+/// Places on triangles f x 3 of points n x d, by area: count x d, or 0 x d where no triangle has area.
+#[pyfunction]
+pub(crate) fn sample_surface<'py>(
+    py: Python<'py>,
+    x: PyReadonlyArray2<'py, f64>,
+    faces: PyReadonlyArray2<'py, u32>,
+    count: usize,
+    seed: u64,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let (dim, x) = (x.shape()[1], x.as_slice()?);
+    let (faces, _) = faces.as_slice()?.as_chunks::<3>();
+    let places = py.detach(|| placement::sample_surface(x, dim, faces, count, seed));
+    points(py, places.map_err(|error| from_core(error, None))?, dim)
+}
