@@ -29,7 +29,7 @@ def main(folder: Path) -> None:
         chosen = farthest_of(x, count)
         diagonal = np.linalg.norm(np.ptp(x, axis=0))
         panels = [Panel("true pose", pose, poses.rest.faces)]
-        for method in ("neural", "shape-aware"):
+        for method in ("neural", "shape-aware-exact"):
             y = METHODS[method](poses.rest, x[chosen], pose[chosen])
             error = 100 * np.linalg.norm(y - pose, axis=1).mean() / diagonal
             panels.append(Panel(f"{METHODS[method].title}: {error:.2f} % off", y, poses.rest.faces))

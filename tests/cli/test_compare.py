@@ -11,6 +11,8 @@ import pytest
 import neuralmls as nm
 from neuralmls.experiments.methods import METHODS
 
+pytestmark = pytest.mark.usefixtures("brief_training")
+
 MOVED = """\
 name,x,y,z,target_x,target_y,target_z
 foot,0.5,0,0.5,0.5,0,0.5
@@ -34,6 +36,8 @@ def test_table_names_every_method_or_why_it_does_not_apply(run, moved, here):
     assert (ran.code, ran.err) == (0, "")
     for word in ("NeuralMLS", "Classic MLS", "off targets", "curvature", "Dirichlet", "flipped", "seconds"):
         assert word in ran.out
+    assert "Shape-aware, exact (ours)" in ran.out
+    assert "(ours): not in the paper" in ran.out
     told = ran.out[ran.out.index("what does not apply") :].split()
     assert "ARAP needs a control point on each connected part" in " ".join(told)
 
@@ -58,7 +62,8 @@ def test_json_holds_every_figure(run, moved):
 def test_only_some_methods_if_asked_for(run, moved, refused):
     told = json.loads(run(*moved, "--json", "--methods", "classic,rbf").out)
     assert [method["name"] for method in told["methods"]] == ["classic", "rbf"]
-    refused(2, *moved, "--methods", "kpd", words=("--methods", "neural, neural-exact, shape-aware, classic", "'kpd'"))
+    known = "neural, neural-exact, shape-aware, shape-aware-exact, classic"
+    refused(2, *moved, "--methods", "kpd", words=("--methods", known, "'kpd'"))
 
 
 def test_csv_has_a_row_a_method(run, moved, here):

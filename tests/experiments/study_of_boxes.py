@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import neuralmls as nm
 from neuralmls.errors import NotApplicable
-from neuralmls.experiments.methods import METHODS, Geometry, Method, neural
+from neuralmls.experiments.methods import METHODS, Geometry, neural, of_shapes
 from neuralmls.experiments.study.build import Study, build
 from neuralmls.experiments.study.cases import Case
 
@@ -31,7 +31,7 @@ def _only_cars(shape: Geometry, p: ArrayLike, q: ArrayLike) -> NDArray[np.float6
 METHODS_OF_BOXES = {
     "neural": neural(width=32, steps=5),
     "classic": METHODS["classic"],
-    "shift": Method("shift", _only_cars),
+    "shift": of_shapes("shift", _only_cars),
 }
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import neuralmls as nm
-from neuralmls.experiments.methods import Method, Surface
+from neuralmls.experiments.methods import Bound, Method, Surface, of_shapes
 from neuralmls.experiments.poses import POSE_METHODS, Poses, pose_errors, read_poses
 
 # QUALITY, point 4: RBF, classic 1/d^4, the paper's weights after 200 steps, ARAP.
@@ -39,6 +39,17 @@ def test_neural_weights_and_arap_measure_what_was_measured(data, name, count):
     assert measured(data, name, count, ["neural", "arap"]) == pytest.approx(MEASURED[name, count][2:], rel=0.05)
 
 
+def test_what_does_not_hang_on_the_pose_is_done_once(cloud):
+    bound = []
+
+    def bind(shape, p):
+        bound.append(len(p))
+        return Bound(lambda q: shape.positions)
+
+    pose_errors(Poses("several", Surface(cloud, None), np.stack([cloud, cloud + 1, cloud + 2])), Method("m", bind), 5)
+    assert bound == [5]
+
+
 @pytest.fixture
 def cloud() -> np.ndarray:
     return np.random.default_rng(0).normal(size=(50, 3))
@@ -52,7 +63,7 @@ def test_six_poses_at_most_spread_over_the_file(cloud):
         return shape.positions
 
     poses = Poses("many", Surface(cloud, None), np.stack([cloud + number for number in range(20)]))
-    errors = pose_errors(poses, Method("remember", remember), 5)
+    errors = pose_errors(poses, of_shapes("remember", remember), 5)
     assert seen == [0, 3, 7, 11, 15, 19]
     diagonal = np.linalg.norm(np.ptp(cloud, axis=0))
     np.testing.assert_allclose(errors, np.array(seen) * 100 * np.sqrt(3) / diagonal)

@@ -31,7 +31,7 @@ HALVES = np.array([[0, 1, 2], [0, 2, 3]])
 
 
 @pytest.fixture(scope="module")
-def everything(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[Item, Report]]:
+def everything(tmp_path_factory: pytest.TempPathFactory, brief_training: None) -> tuple[Path, dict[Item, Report]]:
     """All items on coarse shapes of ours."""
     folder = tmp_path_factory.mktemp("reproduce")
     return folder, reproduce(ITEMS, Lab(folder, quick=True))[1]
@@ -87,6 +87,17 @@ def test_the_numbers_are_written_for_machines_too(everything):
     assert list(stored) == list(NAMES)
     for item, report in reports.items():
         assert [claim["verdict"] for claim in stored[item.name]["claims"]] == [c.verdict for c in report.claims]
+
+
+@pytest.mark.parametrize("name", ["fig4", "table1", "fig6"])
+def test_what_is_not_in_the_paper_stands_beside_it_and_says_so(everything, name):
+    item = chosen([name])[0]
+    report = everything[1][item]
+    rows = {row[0] for table in report.tables for row in table.rows}
+    beyond = {label for label in rows if "(ours)" in label}
+    assert beyond == {"neural, exact (ours)", "shape-aware (ours)", "shape-aware, exact (ours)"}
+    assert "classic MLS" in rows
+    assert "marked (ours) is not in the paper" in report.setting
 
 
 def test_without_the_papers_shapes_the_reports_say_so(everything):

@@ -1,12 +1,31 @@
 """The methods that the paper compares with, and two that users know: each is one call, `baseline(shape, p, q)`.
 
-All take the same arguments and return the same thing, so that a comparison needs to know only their names:
+All take the same arguments and return the same thing, so that a comparison needs to know only their names. Their own
+docstrings say what is special about each. Unmoved control points return the positions bit for bit.
 
-`shape : neuralmls.Shape`, `p, q : (m, 3)`, the control points at rest and moved, in the coordinates of the file
--> `(n, 3) float64`, the positions of the vertices. Unmoved control points return the positions bit for bit. Where
-a method has conditions that the shape does not meet, it raises `NotApplicable`, whose sentence says which.
+Parameters
+----------
+shape : Shape
+    In space (for `classic`: of any dimension); what else it has to be, each method says.
+p, q : (m, 3)
+    Control points at rest and moved, in the coordinates of the file.
 
-All but `classic` need the extra `baselines` (libigl, SciPy, safetensors), which is imported when a method runs.
+Returns
+-------
+(n, 3) float64, the positions of the vertices
+
+Raises
+------
+NotApplicable
+    The shape or the control points do not meet the method's conditions; the sentence says which.
+ArgumentError
+    `p` or `q` are no finite points, or not as many as the other.
+NeuralMLSError
+    A library of the extra `baselines` (libigl, SciPy, safetensors) is not installed. All but `classic` need it; it is
+    imported when a method runs.
+
+Examples
+--------
 
 >>> NAMES
 ('classic', 'arap', 'kpd', 'rbf', 'biharmonic')

@@ -18,27 +18,13 @@ def arap(shape: Shape, p: ArrayLike, q: ArrayLike) -> NDArray[np.float64]:
     """Return the vertices `y` that minimise `sum_i sum_(j ~ i) c_ij |(y_i - y_j) - R_i (x_i - x_j)|^2`.
 
     `R_i` is a rotation, `c_ij` the cotangent weight. The vertex nearest to each control point is a constraint, as in
-    the paper: it moves by `q - p`.
-
-    Parameters
-    ----------
-    shape : Shape
-        A manifold triangle mesh without degenerate triangles, a control point on each connected part.
-    p, q : (m, 3)
-        Control points at rest and moved, in the coordinates of the file.
-
-    Returns
-    -------
-    (n, 3) float64
+    the paper: it moves by `q - p`. The shape must be a manifold triangle mesh without degenerate triangles, with a
+    control point on each connected part. Arguments, result and further errors: `neuralmls.baselines`.
 
     Raises
     ------
     NotApplicable
         The shape is no such mesh; two control points have the same nearest vertex; the iterations do not settle.
-    ArgumentError
-        `p` or `q` are no finite points, or not as many as the other.
-    NeuralMLSError
-        libigl or SciPy is not installed.
 
     Source
     ------

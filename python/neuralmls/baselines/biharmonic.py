@@ -17,28 +17,14 @@ def biharmonic(shape: Shape, p: ArrayLike, q: ArrayLike) -> NDArray[np.float64]:
     """Return `y = x + sum_i w_i (q_i - p_i)`, with weights `0 <= w_i <= 1` that minimise `sum_i 1/2 |Laplacian w_i|^2`.
 
     `w_i` is 1 at the vertex nearest to control point i and 0 at those of the others; each vertex's weights are divided
-    by their sum. Control points have no rotation of their own, so that only translations are blended.
-
-    Parameters
-    ----------
-    shape : Shape
-        A manifold triangle mesh without degenerate triangles, a control point on each connected part. It need not be
-        closed: the paper fills it with tetrahedra, here the weights live on the surface.
-    p, q : (m, 3)
-        Control points at rest and moved, in the coordinates of the file.
-
-    Returns
-    -------
-    (n, 3) float64
+    by their sum. Control points have no rotation of their own, so that only translations are blended. The shape must be
+    such a mesh as `arap` takes; it need not be closed: the paper fills it with tetrahedra, here the weights live on the
+    surface. Arguments, result and further errors: `neuralmls.baselines`.
 
     Raises
     ------
     NotApplicable
         The shape is no such mesh; two control points have the same nearest vertex; there is no solution.
-    ArgumentError
-        `p` or `q` are no finite points, or not as many as the other.
-    NeuralMLSError
-        libigl or SciPy is not installed.
 
     Source
     ------

@@ -22,20 +22,14 @@ def classic(
 ) -> NDArray[np.float64]:
     """Return the vertices deformed by `y = M (x - p*) + q*` with the weights `1 / d^(2 alpha)`.
 
+    It takes any shape, of any dimension d. Arguments and result: `neuralmls.baselines`.
+
     Parameters
     ----------
-    shape : Shape
-        Any shape, of any dimension.
-    p, q : (m, d)
-        Control points at rest and moved, in the coordinates of the file.
     alpha : float > 0
         Exponent of the *squared* distance: 0.5 is 1/d.
     temperature : float > 0
     transform : "rigid", "similarity" or "affine"
-
-    Returns
-    -------
-    (n, d) float64
 
     Raises
     ------

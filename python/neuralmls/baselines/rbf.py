@@ -19,26 +19,12 @@ def rbf(shape: Shape, p: ArrayLike, q: ArrayLike) -> NDArray[np.float64]:
 
     The kernel `|r|` minimises in space what the thin plate's `r^2 log r` does in the plane: the integral of all second
     derivatives squared. Where the control points span no volume (fewer than four, or about in a plane), `A` is zero.
-
-    Parameters
-    ----------
-    shape : Shape
-        Any shape in space: its faces are not looked at.
-    p, q : (m, 3)
-        Control points at rest and moved, in the coordinates of the file.
-
-    Returns
-    -------
-    (n, 3) float64
+    The faces are not looked at. Arguments, result and further errors: `neuralmls.baselines`.
 
     Raises
     ------
     NotApplicable
         Two control points are in the same place, or so close that the equations have no solution.
-    ArgumentError
-        `p` or `q` are no finite points, or not as many as the other.
-    NeuralMLSError
-        SciPy is not installed.
 
     Source
     ------

@@ -26,7 +26,7 @@ def benchmark() -> None:
 @click.option(
     "--methods",
     metavar="NAME,...",
-    help="rbf,classic,neural,shape-aware,arap if not given; also neural-exact,biharmonic.",
+    help="rbf,classic,neural,shape-aware-exact,arap if not given; also neural-exact,shape-aware,biharmonic.",
 )
 @click.option("--counts", metavar="M,...", default="12,40", help="Numbers of control points.")
 @options.json

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 @click.option(
     "--methods",
     metavar="NAME,...",
-    help="neural,neural-exact,shape-aware,classic,rbf,arap,biharmonic,kpd; all if not given.",
+    help="neural,neural-exact,shape-aware,shape-aware-exact,classic,rbf,arap,biharmonic,kpd; all if not given.",
 )
 @click.option("--output", "-o", metavar="FOLDER", type=options.PATH, help="Write each deformed shape into it.")
 @click.option("--picture", type=options.PATH, help="Draw the source and all results, .png.")
@@ -52,9 +52,9 @@ def compare(
 ) -> None:
     """Deform a shape by every method that can, and measure each.
 
-    Neural weights (as in the paper, with exact handles, and taught by the shape), classic weights,
-    thin-plate RBF, ARAP, biharmonic weights, and with --kpd KeypointDeformer. A method that cannot
-    do the shape says why. The baselines need
+    Neural weights as in the paper; what we add to it: exact handles, weights that know the
+    shape, and both; classic weights, thin-plate RBF, ARAP, biharmonic weights, and with --kpd
+    KeypointDeformer. A method that cannot do the shape says why. The baselines need
     pip install 'neuralmls[baselines]', the pictures 'neuralmls[figures]'
 
     Example: neuralmls compare chair.obj --points chair.json --picture all.png

@@ -10,6 +10,7 @@ from typing import Any, TextIO
 
 from neuralmls.cli import console
 from neuralmls.experiments.compare import Result
+from neuralmls.experiments.methods import OURS
 from neuralmls.files import write_atomically
 from neuralmls.shape import Shape
 
@@ -84,6 +85,8 @@ def show(told: dict[str, Any], file: TextIO) -> None:
         console.table([*head, "flipped"], [_distortion(method) for method in surfaces], range(1, 10), file)
         for sentence in _left_out(surfaces[0]["measures"], told):
             console.line(f"  {sentence}", file)
+    if any(OURS in method["title"] for method in done):
+        console.line(f"{OURS}: not in the paper", file)
     reasons = [(m["title"], m["not_applicable"]) for m in told["methods"] if m["not_applicable"] is not None]
     if reasons:
         print("\nwhat does not apply", file=file)

@@ -72,9 +72,10 @@ def attempt(method: Method, shape: Geometry, p: ArrayLike, q: ArrayLike) -> Resu
     """
     start = perf_counter()
     try:
-        y = method(shape, p, q)
+        bound = method.bind(shape, p)
+        y = bound.positions(q)
         seconds = perf_counter() - start
-        f = None if method.space is None else method.space(shape, p, q)
+        f = None if bound.space is None else bound.space(q)
     except (ArgumentError, FileError):
         raise
     except NeuralMLSError as error:

@@ -1,7 +1,7 @@
 """The methods that experiments compare, each under one name and with one way to call it.
 
 >>> list(METHODS)
-['neural', 'neural-exact', 'shape-aware', 'classic', 'rbf', 'arap', 'biharmonic']
+['neural', 'neural-exact', 'shape-aware', 'shape-aware-exact', 'classic', 'rbf', 'arap', 'biharmonic']
 >>> square = Surface(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]]))
 >>> METHODS["classic"](square, square.positions, square.positions + 1).tolist()[0]
 [1.0, 1.0, 1.0]
@@ -14,6 +14,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
@@ -26,6 +27,8 @@ from neuralmls.weights import NeuralWeights, ShapeAwareWeights, Weights
 
 Array: TypeAlias = NDArray[np.float64]
 SpaceMap: TypeAlias = Callable[[Array], Array]
+
+OURS = "(ours)"  # in the titles of what is not in the paper: docs/beyond-the-paper.md
 
 
 class Geometry(Protocol):
@@ -49,6 +52,22 @@ class Surface:
 
 
 @dataclass(frozen=True)
+class Bound:
+    """A method with a shape and its control points at rest, which it deforms for any targets q (m, d).
+
+    Attributes
+    ----------
+    positions : callable, q -> (n, d)
+        The vertices deformed. Raises `NotApplicable` where the method cannot do the shape, in a sentence.
+    space : callable, q -> (callable, (k, d) -> (k, d)), or None
+        The map of all of space whose values at the vertices `positions` are; None where there is none.
+    """
+
+    positions: Callable[[ArrayLike], Array]
+    space: Callable[[ArrayLike], SpaceMap] | None = None
+
+
+@dataclass(frozen=True)
 class Method:
     """One way to deform a shape by control points; call it with `(shape, p, q)`.
 
@@ -56,19 +75,21 @@ class Method:
     ----------
     title : str
         What tables and figures call it.
-    positions : callable, (shape, p (m, d), q (m, d)) -> (n, d)
-        The vertices deformed. Raises `NotApplicable` where the method cannot do the shape, in a sentence.
-    space : callable, (shape, p, q) -> (callable, (k, d) -> (k, d)), or None
-        The map of all of space whose values at the vertices `positions` are; None where there is none.
+    bind : callable, (shape, p (m, d)) -> Bound
+        Does once, as training a network, what does not depend on the targets.
     """
 
     title: str
-    positions: Callable[[Geometry, ArrayLike, ArrayLike], Array]
-    space: Callable[[Geometry, ArrayLike, ArrayLike], SpaceMap] | None = None
+    bind: Callable[[Geometry, ArrayLike], Bound]
 
     def __call__(self, shape: Geometry, p: ArrayLike, q: ArrayLike) -> Array:
         """Return the vertices deformed, (n, d) float64, in the coordinates of the shape."""
-        return self.positions(shape, p, q)
+        return self.bind(shape, p).positions(q)
+
+
+def of_shapes(title: str, deformed: Callable[[Geometry, ArrayLike, ArrayLike], Array]) -> Method:
+    """A method that is one function of `(shape, p, q)`, and looks at the shape as a whole."""
+    return Method(title, lambda shape, p: Bound(lambda q: deformed(shape, p, q)))
 
 
 def neural(
@@ -88,13 +109,13 @@ def neural(
     return _of_weights(title, fitted, transform, temperature, adherence)
 
 
-def shape_aware(title: str = "Shape-aware, exact", *, seed: int = 0) -> Method:
-    """Weights that know the shape, and control points that arrive."""
+def shape_aware(title: str = f"Shape-aware {OURS}", *, adherence: float = 0.0, seed: int = 0) -> Method:
+    """Weights that know the shape, with the options of `Deformer.deform` and of `ShapeAwareWeights.fit`."""
 
     def fitted(shape: Geometry, p: ArrayLike) -> Weights:
         return ShapeAwareWeights.fit(p, shape.positions, shape.faces, seed=seed)
 
-    return _of_weights(title, fitted, adherence=1.0)
+    return _of_weights(title, fitted, adherence=adherence)
 
 
 def classic(title: str = baselines.TITLES["classic"], **options: Any) -> Method:
@@ -114,7 +135,7 @@ def kpd(path: str | os.PathLike[str], title: str = baselines.TITLES["kpd"]) -> M
     """
     from neuralmls.baselines.kpd import KeypointDeformer
 
-    return _of_vertices(title, "kpd", network=KeypointDeformer.read(path))
+    return of_shapes(title, partial(baselines.get("kpd"), network=KeypointDeformer.read(path)))
 
 
 def _of_weights(
@@ -126,38 +147,40 @@ def _of_weights(
 ) -> Method:
     """Moving least squares with weights that are fitted to the shape and its control points."""
 
-    def space(shape: Geometry, p: ArrayLike, q: ArrayLike) -> SpaceMap:
+    def bind(shape: Geometry, p: ArrayLike) -> Bound:
         weights = fitted(shape, p)
 
-        def deformed(x: Array) -> Array:
-            y = Deformer(x, weights, transform=transform).deform(q, temperature, adherence=adherence)
-            return np.asarray(y, dtype=np.float64)
+        def deformed(deformer: Deformer, q: ArrayLike) -> Array:
+            return np.asarray(deformer.deform(q, temperature, adherence=adherence), dtype=np.float64)
 
-        return deformed
+        of_vertices = Deformer(shape.positions, weights, transform=transform)
+        return Bound(
+            lambda q: deformed(of_vertices, q),
+            lambda q: lambda x: deformed(Deformer(x, weights, transform=transform), q),
+        )
 
-    return Method(title, lambda shape, p, q: space(shape, p, q)(shape.positions), space)
-
-
-def _of_vertices(title: str, name: str, **options: Any) -> Method:
-    """A baseline that looks at the shape as a whole."""
-    return Method(title, lambda shape, p, q: baselines.get(name)(shape, p, q, **options))
+    return Method(title, bind)
 
 
 def _of_space(title: str, name: str, **options: Any) -> Method:
     """A baseline that moves each point by where it is, whatever the shape."""
 
-    def space(_: Geometry, p: ArrayLike, q: ArrayLike) -> SpaceMap:
-        return lambda x: baselines.get(name)(Surface(x, None), p, q, **options)
+    def bind(shape: Geometry, p: ArrayLike) -> Bound:
+        def space(q: ArrayLike) -> SpaceMap:
+            return lambda x: baselines.get(name)(Surface(x, None), p, q, **options)
 
-    return Method(title, lambda shape, p, q: space(shape, p, q)(shape.positions), space)
+        return Bound(lambda q: space(q)(shape.positions), space)
+
+    return Method(title, bind)
 
 
 METHODS: dict[str, Method] = {
     "neural": neural(),
-    "neural-exact": neural("NeuralMLS, exact", adherence=1.0),
+    "neural-exact": neural(f"NeuralMLS, exact {OURS}", adherence=1.0),
     "shape-aware": shape_aware(),
+    "shape-aware-exact": shape_aware(f"Shape-aware, exact {OURS}", adherence=1.0),
     "classic": classic(),
     "rbf": _of_space(baselines.TITLES["rbf"], "rbf"),
-    "arap": _of_vertices(baselines.TITLES["arap"], "arap"),
-    "biharmonic": _of_vertices(baselines.TITLES["biharmonic"], "biharmonic"),
+    "arap": of_shapes(baselines.TITLES["arap"], baselines.get("arap")),
+    "biharmonic": of_shapes(baselines.TITLES["biharmonic"], baselines.get("biharmonic")),
 }

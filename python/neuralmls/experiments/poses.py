@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from neuralmls.arrays import as_points, as_triangles
 from neuralmls.errors import ArgumentError, FileError
-from neuralmls.experiments.methods import METHODS, Array, Method, Surface, classic, neural
+from neuralmls.experiments.methods import METHODS, OURS, Array, Method, Surface, classic, neural
 from neuralmls.placement import farthest_of
 
 MOST = 6  # poses of a file, spread evenly over it
@@ -26,10 +26,10 @@ MOST = 6  # poses of a file, spread evenly over it
 POSE_METHODS: dict[str, Method] = METHODS | {
     "classic": classic("Classic MLS, 1/d^4", alpha=2.0),
     "neural": neural("NeuralMLS, 200 steps", steps=200),
-    "neural-exact": neural("NeuralMLS, 200 steps, exact", steps=200, adherence=1.0),
+    "neural-exact": neural(f"NeuralMLS, 200 steps, exact {OURS}", steps=200, adherence=1.0),
 }
 
-QUICK = ("rbf", "classic", "neural", "shape-aware", "arap")  # biharmonic weights take ten times as long
+QUICK = ("rbf", "classic", "neural", "shape-aware-exact", "arap")  # biharmonic weights take ten times as long
 
 
 @dataclass(frozen=True)
@@ -95,8 +95,9 @@ def pose_errors(poses: Poses, method: Method, count: int) -> list[float]:
     diagonal = float(np.linalg.norm(np.ptp(x, axis=0)))
     which = np.linspace(0, len(poses.poses) - 1, min(MOST, len(poses.poses))).astype(int)
     errors = []
+    bound = method.bind(poses.rest, x[chosen])
     for pose in poses.poses[which]:
-        y = method(poses.rest, x[chosen], pose[chosen])
+        y = bound.positions(pose[chosen])
         errors.append(100 * float(np.linalg.norm(y - pose, axis=1).mean()) / diagonal)
     return errors
 

@@ -26,32 +26,22 @@ def kpd(
     """Return the vertices deformed by KeypointDeformer: each keypoint moves as the control point that lies on it.
 
     KeypointDeformer chooses its keypoints itself, so control points have to be put where those are, as in the paper's
-    comparison: `KeypointDeformer.read(path).bind(shape).keypoints`. A keypoint without a control point stays.
+    comparison: `KeypointDeformer.read(path).bind(shape).keypoints`. A keypoint without a control point stays. The shape
+    must be of the category that the network was trained on, in that category's orientation. Other
+    arguments, the result and further errors: `neuralmls.baselines`.
 
     Parameters
     ----------
-    shape : Shape
-        Of the category that the network was trained on, in that category's orientation.
-    p, q : (m, 3), m at most the number of keypoints
-        Control points at rest and moved, in the coordinates of the file.
     network : KeypointDeformer, or the path of its `.safetensors` file; or the network bound to this shape
         The last saves time where one shape is deformed often.
-
-    Returns
-    -------
-    (n, 3) float64
 
     Raises
     ------
     NotApplicable
-        There is no network; a control point has no keypoint within a tenth of half of the shape's longest side; the
-        shape is not in space, or has no size.
-    ArgumentError
-        `p` or `q` are no finite points, or not as many as the other.
+        There is no network; there are more control points than keypoints, or one has no keypoint within a tenth of half
+        of the shape's longest side; the shape is not in space, or has no size.
     FileError
         The network's file cannot be used.
-    NeuralMLSError
-        SciPy or safetensors is not installed.
 
     Source
     ------
