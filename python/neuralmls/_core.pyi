@@ -88,6 +88,7 @@ class Deformer:
         logits: NDArray[np.float32],
         transform: str,
     ) -> Deformer: ...
+    def prepare(self, temperature: float) -> None: ...
     def deform(
         self,
         q: NDArray[np.float64],
