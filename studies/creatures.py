@@ -20,7 +20,10 @@ from neuralmls.experiments.poses import Poses
 
 Array = NDArray[np.float64]
 BEND = 1.6  # of every joint, in what its bone says
+ALIKE = 0.8  # of a bend, in paired poses: what left and right have in common
 SPACING = 1 / 48  # of the grid on which a level set is found, in longest sides
+
+Turned = tuple[Array, Array]  # axes (bones, 3), and how far of its greatest bend each bone turns (bones,)
 
 
 @dataclass(frozen=True)
@@ -74,12 +77,12 @@ class Skeleton:
         weights = np.where(linked[nearest], np.exp(-np.minimum(above, 50)), 0)
         return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 
-    def pose(self, x: Array, skin: Array, rng: np.random.Generator, bend: float = 1.0) -> Array:
-        """Return the points (n, 3) in one random pose."""
+    def pose(self, x: Array, skin: Array, turned: Turned) -> Array:
+        """Return the points (n, 3) in the pose that turns the bones so."""
         turns: list[Array] = []
         shifts: list[Array] = []
-        for bone in self.bones:
-            turn = _rotation(rng.normal(size=3), np.radians(bend * bone.bend) * rng.uniform(-1, 1))
+        for bone, axis, part in zip(self.bones, *turned, strict=True):
+            turn = _rotation(axis, np.radians(bone.bend) * part)
             if bone.parent >= 0:
                 place = turns[bone.parent] @ bone.head + shifts[bone.parent]
                 turn = turns[bone.parent] @ turn
@@ -89,6 +92,22 @@ class Skeleton:
             shifts.append(place - turn @ bone.head)
         moved = np.einsum("bij,nj->nbi", np.stack(turns), x) + np.stack(shifts)
         return np.einsum("nb,nbi->ni", skin, moved)
+
+
+def free(skeleton: Skeleton, rng: np.random.Generator) -> Turned:
+    """Every joint bends by itself, about any axis."""
+    drawn = [(rng.normal(size=3), rng.uniform(-1, 1)) for _ in skeleton.bones]
+    return np.stack([axis for axis, _ in drawn]), BEND * np.array([part for _, part in drawn])
+
+
+def paired(skeleton: Skeleton, rng: np.random.Generator) -> Turned:
+    """As animals gallop: joints bend about an axis across the body, more or less, and those of left and right alike."""
+    middles = np.array([(bone.head + bone.tail) / 2 for bone in skeleton.bones])
+    twins = np.linalg.norm(middles[:, None] - middles * (1, -1, 1), axis=2).argmin(axis=1)
+    count = len(middles)
+    shared = rng.uniform(-1, 1, count)[np.minimum(np.arange(count), twins)]
+    axes = np.array([0, 1, 0]) + 0.3 * rng.normal(size=(count, 3))
+    return axes, BEND * (ALIKE * shared + (1 - ALIKE) * rng.uniform(-1, 1, count))
 
 
 def _rotation(axis: Array, angle: float) -> Array:
@@ -173,6 +192,27 @@ def two_legged(rng: np.random.Generator) -> Skeleton:
     return s
 
 
+def clothed(rng: np.random.Generator) -> Skeleton:
+    """A person in wide trousers and sleeves."""
+    u = rng.uniform
+    s = Skeleton()
+    hip, width, trunk = u(0.8, 0.95), u(0.1, 0.13), u(0.12, 0.16)
+    pelvis = s.add(-1, (0, 0, hip), (0, 0, hip + 0.17), (trunk * 1.15, trunk), 15)
+    chest = s.add(pelvis, (0, 0, hip + 0.17), (0, 0, hip + 0.42), (trunk, trunk * 1.05), 20)
+    neck = s.add(chest, (0, 0, hip + 0.48), (0, 0, hip + 0.62), (0.065, 0.06), 25)
+    s.add(neck, (0, 0, hip + 0.65), (0, 0, hip + 0.78), (0.1, 0.11), 25)
+    spread, flare = u(15, 60), width * u(0.7, 1.0)
+    for side in (-1, 1):
+        out = np.array([0, side * np.sin(np.radians(spread)), -np.cos(np.radians(spread))])
+        shoulder = np.array([0, side * (trunk + 0.065), hip + 0.45])
+        arm = [np.array([0, side * trunk * 0.6, hip + 0.45]), shoulder]
+        s.chain(chest, [*arm, *(shoulder + out * long for long in (0.29, 0.56, 0.72))], (0.07, 0.055), 45)
+        top, knee, ankle = (np.array([0, side * width, hip * share]) for share in (0.95, 0.5, 0.07))
+        shin = s.chain(pelvis, [top, knee, ankle], (width * 0.95, flare), 40)
+        s.add(shin, ankle, ankle - np.array([0.2, 0, 0.02]), (0.06, 0.045), 30)
+    return s
+
+
 def octopus(rng: np.random.Generator) -> Skeleton:
     """A head and eight arms of five bones."""
     u = rng.uniform
@@ -229,6 +269,7 @@ def chair(rng: np.random.Generator) -> Skeleton:
 KINDS: dict[str, tuple[Callable[[np.random.Generator], Skeleton], Callable[[Skeleton], Surface]]] = {
     "four-legged": (four_legged, level_set),
     "two-legged": (two_legged, level_set),
+    "clothed": (clothed, level_set),
     "octopus": (octopus, level_set),
     "hand": (hand, level_set),
     "chair": (chair, boxes),
@@ -241,13 +282,14 @@ def _stiff(skeleton: Skeleton, rest: Surface) -> Array:
     return np.repeat(np.eye(count), len(rest.positions) // count, axis=0)
 
 
-def creature(kind: str, seed: int, poses: int = 4, bend: float = BEND) -> Poses:
+def creature(
+    kind: str, seed: int, turned: Callable[[Skeleton, np.random.Generator], Turned] = free, poses: int = 4
+) -> Poses:
     """Return one of a kind, at rest and in random poses."""
     make, surface = KINDS[kind]
     rng = np.random.default_rng([seed, *kind.encode()])
     skeleton = make(rng)
     rest = surface(skeleton)
     skin = skeleton.skin(rest.positions) if surface is level_set else _stiff(skeleton, rest)
-    return Poses(
-        f"{kind} {seed}", rest, np.stack([skeleton.pose(rest.positions, skin, rng, bend) for _ in range(poses)])
-    )
+    moved = [skeleton.pose(rest.positions, skin, turned(skeleton, rng)) for _ in range(poses)]
+    return Poses(f"{kind} {seed} {turned.__name__}", rest, np.stack(moved))

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import neuralmls as nm
-from neuralmls.weights.surface_graph import SPACING, SurfaceGraph
+from neuralmls.weights.surface_graph import SurfaceGraph
+from neuralmls.weights.surface_links import SPACING
 
 pytest.importorskip("scipy")
 
@@ -50,7 +51,7 @@ def stool() -> tuple[np.ndarray, np.ndarray]:
 def along(x: np.ndarray, faces: np.ndarray | None, start: Any, end: Any) -> float:
     """The distance along the shape."""
     graph = SurfaceGraph(np.asarray(x, float), faces)
-    return float(graph.distances(np.array([start], float))[0, graph.nearest(np.array([end], float))[0]])
+    return float(graph.distances(np.array([start], float))[0][graph.nearest(np.array([end], float))[0]])
 
 
 def test_a_path_over_coarse_triangles_is_about_straight() -> None:

@@ -1,4 +1,4 @@
-"""Weights that know the shape: a network taught by distances along it, besides the control points."""
+"""Weights that know the shape: a network taught by random walks over it, besides the control points."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ from neuralmls.weights.surface_graph import SurfaceGraph
 Array = NDArray[np.float64]
 
 # Chosen once, for all shapes, by studies/shape_aware.py; docs/shape-aware.md has the figures.
-EXPONENT = 6.0
+POWER = 3.0
+KEPT = 8.0  # logits below the largest by at most this are kept
+TAIL = 4.0  # lower ones fall as this times a logarithm: weights as a power, which a network can learn
+EXPONENT = 6.0  # of the straight-line distance, where no control point governs
 REACH = 0.75  # of the spacing of the control points: how far along the shape one governs it
 SOFTNESS = 2.0  # the network learns the weights to the power 1/2: what it gives is then sharpened as much
 SAMPLES = 2048
@@ -26,6 +29,7 @@ WIDTH = 256
 STEPS = 1000
 RATE = 8e-3
 LEAST = 1e-6  # a distance, in halves of the shape's longest side: what is nearer is on the control point
+LEAST_SHARE = 1e-12  # of walks: fewer are rounding
 
 
 class ShapeAwareWeights(NetworkWeights):
@@ -42,12 +46,14 @@ class ShapeAwareWeights(NetworkWeights):
         seed: int = 0,
         progress: Progress | None = None,
     ) -> ShapeAwareWeights:
-        """Train a network to give the weights `w_i ~ 1 / (D_i^s E_i^(1 - s))^6` on a shape.
+        """Train a network to give the weights `w_i ~ h_i^(3 s) / E_i^(6 (1 - s))` on a shape.
 
-        `E_i` is the straight-line distance from control point i, and `D_i` the distance along the shape: the shortest
-        path over its triangles, across parts that touch or overlap, and from a part that touches none to its nearest.
-        `s` is 1 where a control point governs the shape, with `D_i` below 3/4 of the control points' spacing; beyond,
-        where the shape says less and less, `s = (3/4 spacing / min D_i)^4`, and the nearest in space decide.
+        `h_i` is the probability that a random walk over the shape meets control point i before the others: over its
+        triangles, across parts that touch or overlap, and from a part that touches none to its nearest. `E_i` is the
+        straight-line distance. `s` is 1 where a control point governs the shape, less than 3/4 of the control points'
+        spacing away, measured along the shape; beyond, at a distance D, where the shape says less and less,
+        `s = (3/4 spacing / D)^4`, and the nearest in space decide. Weights below e^-8 of the largest fall as a power
+        of what they would be: a walk that passes control points is too seldom for a network to learn how seldom.
 
         Between the samples of the surface, and off it, the weights are what the network makes of them, as smooth as the
         paper's. The targets are not needed: one fit serves every drag.
@@ -76,7 +82,8 @@ class ShapeAwareWeights(NetworkWeights):
         Source
         ------
         The paper's network (Shechter et al. 2022, section 3), taught more: softened labels as in Hinton, Vinyals, Dean,
-        "Distilling the knowledge in a neural network", 2015. Distances by Dijkstra's algorithm (SciPy).
+        "Distilling the knowledge in a neural network", 2015. Harmonic weights: Joshi et al., "Harmonic coordinates for
+        character articulation", 2007, there in a cage; distances by Dijkstra's algorithm (SciPy).
 
         Examples
         --------
@@ -106,28 +113,22 @@ class ShapeAwareWeights(NetworkWeights):
 def lessons(p: Array, x: Array, faces: NDArray[Any] | None) -> tuple[Array, NDArray[np.float32]]:
     """Return what the network is taught: samples of the shape (k, d), and the softened weights there (k, m)."""
     graph = SurfaceGraph(x, faces)
-    along = graph.distances(p)
     chosen = graph.spread(SAMPLES)
-    logits = shape_logits(p, graph.nodes[chosen], along[:, chosen].T, spacing(along[:, graph.nearest(p)])) / SOFTNESS
-    return graph.nodes[chosen], softmax(logits).astype(np.float32)
-
-
-def spacing(apart: Array) -> float:
-    """Return how far a control point is from the nearest other one, the median, of distances (m, m)."""
-    if len(apart) == 1:
-        return np.inf
-    others = np.where(np.eye(len(apart), dtype=bool), np.inf, apart)
-    return float(np.median(others.min(axis=1)))
+    logits = shape_logits(graph, p)[chosen]
+    return graph.nodes[chosen], softmax(logits / SOFTNESS).astype(np.float32)
 
 
 def shape_logits(
-    p: Array, x: Array, along: Array, spacing: float, *, exponent: float = EXPONENT, reach: float = REACH
+    graph: SurfaceGraph, p: Array, *, power: float = POWER, kept: float = KEPT, reach: float = REACH
 ) -> Array:
-    """Return the logits of the control points (m, d) at points (k, d), at distances (k, m) along the shape."""
-    straight = np.maximum(np.linalg.norm(x[:, None] - p, axis=2), LEAST)
-    along = np.maximum(along, straight)
-    share = np.minimum(1, reach * spacing / along.min(axis=1, keepdims=True)) ** 4
-    return np.asarray(-exponent * (share * np.log(along) + (1 - share) * np.log(straight)))
+    """Return the logits of the control points (m, d) at every node of a shape, (nodes, m); the largest is 0."""
+    met = np.log(np.maximum(graph.first_met(p), LEAST_SHARE))
+    straight = np.log(np.maximum(np.linalg.norm(graph.nodes[:, None] - p, axis=2), LEAST))
+    far, apart = graph.distances(p)
+    share = np.minimum(1, reach * np.median(apart) / np.maximum(far, LEAST))[:, None] ** 4
+    logits = share * power * met - (1 - share) * EXPONENT * straight
+    below = logits.max(axis=1, keepdims=True) - logits
+    return np.asarray(-np.minimum(below, kept) - TAIL * np.log1p(np.maximum(below - kept, 0) / TAIL))
 
 
 def _sharpened(network: _core.Network, by: float) -> _core.Network:

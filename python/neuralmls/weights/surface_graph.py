@@ -1,36 +1,22 @@
-"""Distances along a shape, whatever it is made of: a graph over its surface, and the shortest paths in it.
-
-Vertices in one place are one node, and long edges are halved until paths over coarse triangles are about straight.
-Within a connected part a path follows the triangles, so that two near legs stay far apart. Parts that touch or overlap
-are joined by short links, and what is left by its nearest pair of nodes: every place can be reached from every other.
-Points of a cloud, and vertices without a face, are linked to their nearest neighbours.
-"""
+"""Walks over a shape, whatever it is made of: which control point a random one meets first; the shortest ones."""
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from neuralmls.arrays import as_triangles
-from neuralmls.errors import NeuralMLSError
 from neuralmls.placement import farthest_of
+from neuralmls.weights.surface_links import CELL, Array, Indices, nearest_to, scipy, surface_links
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
-
-SPACING = 0.06  # longest edge, in halves of the shape's longest side
-TOUCH = 0.5 * SPACING  # parts nearer than this touch
-MOST = 40_000  # nodes: long edges are no longer halved beyond
-NEIGHBOURS = 8  # of a point of a cloud
 MOST_SPREAD = 8192  # nodes that `spread` chooses from: every so many-th of more
-NEAREST = 16  # nodes looked at for another part that touches
+ATTACHED = 64  # nodes that a control point is linked to, at most
+FIRM = 10.0  # what links of a control point conduct, a cell away; on a node ten times as much
 
 
 class SurfaceGraph:
-    """Nodes on a shape and the lengths of the links between them.
+    """Nodes on a shape and the links between them.
 
     Parameters
     ----------
@@ -49,107 +35,83 @@ class SurfaceGraph:
     --------
     >>> horseshoe = np.array([[0.0, 0], [0, 1], [0.04, 1], [0.04, 0]])
     >>> graph = SurfaceGraph(horseshoe, np.array([[0, 1, 1], [1, 2, 2], [2, 3, 3]]))
-    >>> graph.distances(horseshoe[:1])[0, graph.nearest(horseshoe)[3]].round(1)   # not 0.04
+    >>> end = graph.nearest(horseshoe)[3]
+    >>> graph.distances(horseshoe[:1])[0][end].round(1)   # not 0.04
     np.float64(2.0)
+    >>> graph.first_met(horseshoe[[0, 2]])[end].round(2)   # the walk meets the nearer one along the shape
+    array([0., 1.])
     """
 
     def __init__(self, x: Array, faces: NDArray[Any] | None) -> None:
-        self.nodes, triangles = _merged(x, faces)
-        self.nodes, triangles = _divided(self.nodes, triangles)
-        links = [_two_steps(_edges(triangles), len(self.nodes))]
-        loose = np.setdiff1d(np.arange(len(self.nodes)), triangles)
-        links.append(_neighbours(self.nodes, loose))
-        self._links = np.concatenate(links)
-        self._links = np.concatenate([self._links, _touching(self.nodes, self._parts())])
-        while (parts := self._parts()).any():
-            self._links = np.concatenate([self._links, _nearest_pairs(self.nodes, parts)])
+        self._links = surface_links(x, faces)
+        self.nodes = self._links.nodes
 
-    def distances(self, p: Array) -> Array:
-        """Return the lengths of the shortest paths from the points `p` (m, d) to every node: (m, nodes).
+    def first_met(self, p: Array) -> Array:
+        """Return the probability that a random walk from each node meets each of `p` (m, d) before the others.
 
-        A point off the shape starts from the nodes near it: all that are at most half as far again as the nearest.
+        The walk takes a link with a probability proportional to what it conducts: the result is the harmonic function
+        `h_i` that is 1 at control point i and 0 at the others, (nodes, m), rows sum to 1. It knows how wide the shape
+        is: a walk finds its way from a trunk into a thin leg seldom, and from the leg to the trunk soon.
+
+        Source
+        ------
+        Doyle, Snell, "Random walks and electric networks", 1984; cotangents: Pinkall, Polthier, "Computing discrete
+        minimal surfaces and their conjugates", 1993.
         """
         count, m = len(self.nodes), len(p)
-        near, far = _tree(self.nodes).query(p, k=min(64, count))[::-1]
-        near, far = near.reshape(m, -1), far.reshape(m, -1)
-        start = far <= 1.5 * far[:, :1] + 1e-9
-        starts = np.stack([np.nonzero(start)[0] + count, near[start]], axis=1)
-        links = np.concatenate([self._links, self._links[:, ::-1], starts])
+        which, nodes, far = self._attached(p)
+        firm = FIRM * CELL / (far + 0.1 * CELL)
+        (a, b), conducts = self._links.ends.T, self._links.conductances
+        values = np.concatenate([-conducts, -conducts, conducts, conducts, firm])
+        rows, columns = np.concatenate([a, b, a, b, nodes]), np.concatenate([b, a, a, b, nodes])
+        laplacian = scipy("sparse").csc_array((values, (rows, columns)), shape=(count, count))
+        sources = np.zeros((count, m))
+        np.add.at(sources, (nodes, which), firm)
+        # Symmetric and diagonally dominant: no pivots are needed.
+        factors = scipy("sparse.linalg").splu(
+            laplacian, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        )
+        return np.asarray(factors.solve(sources))
+
+    def distances(self, p: Array) -> tuple[Array, Array]:
+        """Return the lengths of shortest paths: from each node to its nearest of `p` (m, d), and between these.
+
+        Returns
+        -------
+        (nodes,), and (m,): from each of `p` to the nearest other, infinite where there is none
+        """
+        count, m = len(self.nodes), len(p)
+        which, nodes, _ = self._attached(p)
+        links = np.concatenate([_two_steps(self._links.ends, count), np.stack([which + count, nodes], axis=1)])
+        a, b = links.T
         ends = np.concatenate([self.nodes, p])
-        graph = self._matrix(links, np.linalg.norm(ends[links[:, 0]] - ends[links[:, 1]], axis=1), count + m)
-        return np.asarray(scipy("sparse.csgraph").dijkstra(graph, indices=np.arange(count, count + m))[:, :count])
+        lengths = np.maximum(np.linalg.norm(ends[a] - ends[b], axis=1), 1e-12)  # a zero would be no link
+        graph = scipy("sparse").csr_array((lengths, (a, b)), shape=(count + m, count + m))
+        far, _, source = scipy("sparse.csgraph").dijkstra(
+            graph, directed=False, indices=np.arange(count, count + m), min_only=True, return_predecessors=True
+        )
+        # The shortest path to another of them crosses once from the nodes nearest to one to those nearest to the other.
+        across = source[a] != source[b]
+        apart = np.full(m, np.inf)
+        for end in (a, b):
+            np.minimum.at(apart, source[end[across]] - count, (far[a] + lengths + far[b])[across])
+        return far[:count], apart
 
     def nearest(self, x: Array) -> Indices:
         """Return the node nearest to each of the points (k, d)."""
-        return np.asarray(_tree(self.nodes).query(x)[1])
+        return np.asarray(nearest_to(self.nodes).query(x)[1])
 
     def spread(self, count: int) -> Indices:
         """Return nodes spread evenly over the shape, `count` or all of them."""
         few = np.arange(0, len(self.nodes), -(-len(self.nodes) // MOST_SPREAD))
         return np.asarray(few[farthest_of(self.nodes[few], count)])
 
-    def _parts(self) -> NDArray[np.int32]:
-        """The number of the connected part of each node, the largest part being 0."""
-        graph = self._matrix(self._links, np.ones(len(self._links)), len(self.nodes))
-        parts = scipy("sparse.csgraph").connected_components(graph, directed=False)[1]
-        order = np.argsort(np.argsort(-np.bincount(parts), kind="stable"), kind="stable")
-        return np.asarray(order[parts], dtype=np.int32)
-
-    def _matrix(self, links: Indices, lengths: Array, count: int) -> Any:
-        """As a sparse matrix; of links given twice, once."""
-        keys, first = np.unique(links[:, 0] * count + links[:, 1], return_index=True)
-        lengths = np.maximum(lengths[first], 1e-12)  # a zero would be no link
-        return scipy("sparse").csr_array((lengths, (keys // count, keys % count)), shape=(count, count))
-
-
-def scipy(module: str) -> Any:
-    """Return a module of SciPy.
-
-    Raises
-    ------
-    NeuralMLSError
-        SciPy is not installed.
-    """
-    try:
-        return import_module(f"scipy.{module}")
-    except ImportError as error:
-        raise NeuralMLSError(
-            "shape-aware weights need SciPy, which is not installed: pip install 'neuralmls[shape-aware]'"
-        ) from error
-
-
-def _tree(nodes: Array) -> Any:
-    return scipy("spatial").cKDTree(nodes)
-
-
-def _merged(x: Array, faces: NDArray[Any] | None) -> tuple[Array, Indices]:
-    """Vertices in one place made one, and the faces of them."""
-    nodes, which = np.unique(np.round(x, 7) + 0.0, axis=0, return_inverse=True)
-    if faces is None or np.size(faces) == 0:
-        return nodes, np.empty((0, 3), dtype=np.int64)
-    return nodes, which.reshape(-1)[as_triangles(faces, len(x))].astype(np.int64)
-
-
-def _divided(x: Array, faces: Indices) -> tuple[Array, Indices]:
-    """Triangles halved across their longest edges until none is longer than `SPACING`."""
-    while len(x) < MOST:
-        ends = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2)
-        lengths = np.linalg.norm(x[ends[:, :, 0]] - x[ends[:, :, 1]], axis=2)
-        long = np.flatnonzero(lengths.max(axis=1, initial=0) > SPACING)
-        if not len(long):
-            break
-        longest = lengths[long].argmax(axis=1)
-        a, b, c = (faces[long, (longest + step) % 3] for step in range(3))
-        edges, which = np.unique(np.sort(np.stack([a, b], axis=1), axis=1), axis=0, return_inverse=True)
-        middle = which.reshape(-1) + len(x)
-        x = np.concatenate([x, x[edges].mean(axis=1)])
-        halves = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
-        faces = np.concatenate([np.delete(faces, long, axis=0), halves])
-    return x, faces
-
-
-def _edges(faces: Indices) -> Indices:
-    return np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    def _attached(self, p: Array) -> tuple[Indices, Indices, Array]:
+        """Links of points (m, d) to nodes near them, at most half as far again as the nearest, and their lengths."""
+        far, near = nearest_to(self.nodes).query(p, k=min(ATTACHED, len(self.nodes)))
+        near, far = near.reshape(len(p), -1), far.reshape(len(p), -1)
+        attached = far <= 1.5 * far[:, :1] + 1e-9
+        return np.nonzero(attached)[0], near[attached], far[attached]
 
 
 def _two_steps(links: Indices, count: int) -> Indices:
@@ -158,33 +120,3 @@ def _two_steps(links: Indices, count: int) -> Indices:
     steps = scipy("sparse").csr_array((np.ones(len(both), dtype=np.int32), both.T), shape=(count, count))
     two = scipy("sparse").triu(steps @ steps + steps, k=1)
     return np.stack(two.nonzero(), axis=1).astype(np.int64)
-
-
-def _neighbours(nodes: Array, loose: Indices) -> Indices:
-    """Links of the points of a cloud to their nearest."""
-    if not len(loose):
-        return np.empty((0, 2), dtype=np.int64)
-    near = _tree(nodes[loose]).query(nodes[loose], k=np.arange(2, NEIGHBOURS + 2))[1]
-    links = np.stack([np.repeat(loose, near.shape[1]), np.append(loose, -1)[near.reshape(-1)]], axis=1)
-    return links[links[:, 1] >= 0]  # fewer points than neighbours
-
-
-def _touching(nodes: Array, parts: NDArray[np.int32]) -> Indices:
-    """Links between nodes of different parts that touch."""
-    if not parts.any():
-        return np.empty((0, 2), dtype=np.int64)
-    far, near = _tree(nodes).query(nodes, k=min(NEAREST, len(nodes)), distance_upper_bound=TOUCH)
-    found = np.isfinite(far)
-    found[found] = parts[near[found]] != np.broadcast_to(parts[:, None], near.shape)[found]
-    return np.stack([np.nonzero(found)[0], near[found]], axis=1)
-
-
-def _nearest_pairs(nodes: Array, parts: NDArray[np.int32]) -> Indices:
-    """For each part but the largest, a link to the nearest node that is not of it."""
-    links = []
-    for part in range(1, parts.max() + 1):
-        own, others = np.flatnonzero(parts == part), np.flatnonzero(parts != part)
-        far, near = _tree(nodes[others]).query(nodes[own])
-        at = far.argmin()
-        links.append([own[at], others[near[at]]])
-    return np.array(links, dtype=np.int64)
