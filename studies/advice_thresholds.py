@@ -1,6 +1,6 @@
 """What `neuralmls.advise` looks at, on displacements that people made: `python -m studies.advice_thresholds FOLDER`.
 
-The thresholds of `neuralmls/advice.py` lie beyond the greatest of these, so that they are silent where nothing is
+The thresholds of `crates/core/src/advice.rs` lie beyond the greatest of these, so that they are silent where nothing is
 torn. FOLDER is that of `studies.exact_handles`.
 """
 
@@ -12,9 +12,10 @@ from pathlib import Path
 import numpy as np
 
 import neuralmls as nm
-from neuralmls.advice import MOVED
 from neuralmls.probe import Probe
 from studies.exact_handles import OURS, PAPER, TRAININGS, cases
+
+MOVED = 0.01  # of the longest side, as the core has it
 
 
 def main() -> None:
@@ -27,13 +28,12 @@ def main() -> None:
             weights = nm.NeuralWeights.fit(found.p, bounds=found.shape.bounds, **TRAININGS[training])
             probe = Probe(found.shape.positions, found.shape.faces, weights, found.q)
             for adherence in (0.0, 1.0):
-                motion = probe.motion(1.0, adherence)
-                moves = np.linalg.norm(motion.positions - probe.places, axis=1) > MOVED * probe.side
-                short = probe.missed("rigid", 1.0, adherence).max() / longest
+                positions, determinants, stretches = probe.core.look(probe.q, probe.turns, 1.0, adherence)
+                moves = np.linalg.norm(positions - probe.places, axis=1) > MOVED * probe.side
+                short = probe.missed(1.0, adherence).max() / longest
                 print(f"| {found.title}, {training.partition(':')[0]}, adherence {adherence:g} | {short:.3f} ", end="")
-                print(
-                    f"| {motion.folded_part():.4f} | {motion.stretch().max():.2f} | {probe.far()[0][moves].max():.2f} |"
-                )
+                folded, far = (determinants <= 0).mean(), probe.core.far()[moves].max()
+                print(f"| {folded:.4f} | {stretches.max():.2f} | {far:.2f} |")
 
 
 if __name__ == "__main__":

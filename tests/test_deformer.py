@@ -86,6 +86,16 @@ def test_a_frame_is_written_where_the_caller_wants_it():
             deformer.deform(q, out=wrong)
 
 
+def test_a_frame_with_prepared_weights_is_the_same():
+    x, (p, q) = RNG.uniform(-1, 1, (50, 3)), RNG.uniform(-1, 1, (2, 5, 3))
+    weights = nm.InverseDistanceWeights(p)
+    deformer = nm.Deformer(x, weights)
+    deformer.prepare(0.5)
+    assert np.array_equal(deformer.deform(q, 0.5), nm.Deformer(x, weights).deform(q, 0.5))
+    with pytest.raises(nm.ArgumentError, match="temperature"):
+        deformer.prepare(0)
+
+
 def test_a_point_and_no_points_are_deformed():
     p = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
     q = np.add(p, 1)

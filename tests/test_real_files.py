@@ -42,6 +42,7 @@ def moved(shape: nm.Shape, folder: Path) -> tuple[Path, np.ndarray]:
     """The bent shape as a file, its side files copied beside it."""
     y, maps = bent(shape)
     target = folder / shape.path.name  # trimesh names geometry after the file
+    assert list(shape.encode(y, maps=maps, stem=target.stem)[1]) == shape.side_files(target.stem), shape.path
     shape.write(target, y, maps=maps)
     return target, y
 

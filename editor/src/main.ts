@@ -16,7 +16,7 @@ import { Autosave } from "./storage/autosave.ts";
 import "./styles.css";
 import { draw } from "./viewport/drawn.ts";
 import { Viewport } from "./viewport/viewport.ts";
-import { createCore } from "./worker/client.ts";
+import { coreBytes, createCore } from "./worker/client.ts";
 
 const THEME_KEY = "neuralmls-theme";
 
@@ -55,7 +55,7 @@ const display: Display = {
   async page(title) {
     const { drawn, bound } = viewport;
     if (!drawn || !bound) throw new Error("There are no control points yet.");
-    return page(title, drawn, viewport.box, store.value.shape?.opened.dim ?? 3, bound, history.session);
+    return page(title, drawn, viewport.box, store.value.shape?.opened.dim ?? 3, bound, history.session, coreBytes);
   },
 };
 

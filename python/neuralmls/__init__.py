@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from neuralmls.control_points import ControlPoints
     from neuralmls.deformer import Deformer
     from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError, NotApplicable
-    from neuralmls.exact import Aim, ExactHandles
+    from neuralmls.exact import Aim, ExactHandles, Soft
     from neuralmls.pipeline import deform
     from neuralmls.placement import farthest_points
     from neuralmls.point_tree import PointTree
@@ -44,6 +44,7 @@ __all__ = [
     "PointTree",
     "Shape",
     "ShapeAwareWeights",
+    "Soft",
     "Turn",
     "Weights",
     "__version__",
@@ -72,6 +73,7 @@ _HOMES = {
     "PointTree": "point_tree",
     "Shape": "shape",
     "ShapeAwareWeights": "weights",
+    "Soft": "exact",
     "Turn": "turns",
     "Weights": "weights",
     "advise": "advice",

@@ -1,36 +1,29 @@
 """Honest advice: where a deformation is likely bad, and what would help.
 
-The thresholds were set on what people did to the chairs and airplanes of the paper's user study, none of which looks
-torn: each lies beyond what those cases reach (studies/advice_thresholds.py, docs/beyond-the-paper.md).
+What is measured, and from when on it is told, stands in crates/core/src/advice.rs, which the editor has it from too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from neuralmls.arrays import as_number
-from neuralmls.errors import ArgumentError
-from neuralmls.probe import Array, Motion, Probe
+from neuralmls.errors import ArgumentError, NeuralMLSError
+from neuralmls.probe import Array, Probe
 from neuralmls.protocol import Transform, Weights
 from neuralmls.turns import Rotations, Scales
+from neuralmls.weights import ShapeAwareWeights
 
 Kind: TypeAlias = Literal["misses", "folds", "torn", "ungoverned"]
 
 # A soft handle may stop short by this part of the longest move (study: up to 0.075), and of the longest side (0.011);
 # an exact one by this part of the side.
 SHORT, WIDE, ARRIVED = 0.1, 0.02, 1e-6
-# This part of the shape may be folded (study: 0.0003 at most, but for one true fold of 0.003 to 0.011).
-FOLDED = 0.002
-# This part may be stretched beyond `probe.STRETCH` (study: none, 3.3 at most): bands where weights switch are thin.
-TORN = 0.0005
-# A place may be so many spacings away from all control points (study: up to 0.83; points spread by farthest-point
-# sampling: about 1 at most), if it moves by more than this part of the longest side.
-FAR, MOVED = 1.5, 0.01
 LISTED = 5
 
 
@@ -80,7 +73,8 @@ def advise(
     - torn: places where `J` stretches far more than in most places, as between control points that move apart;
     - ungoverned: a part that moves, and is far from all control points.
 
-    What would help was tried: another temperature or exact handles are named only where they at least halve it.
+    What would help was tried: another temperature, soft handles and, where neither does, shape-aware weights (if SciPy
+    is there) are named only where they at least halve it; exact handles only where they arrive.
 
     Parameters
     ----------
@@ -116,11 +110,31 @@ def advise(
     if len(named) != len(probe.p):
         raise ArgumentError(f"names: expected {len(probe.p)} of them, found {len(named)}")
     setting = _Setting(as_number("temperature", temperature, 0), adherence)
-    found = [_misses(probe, named, setting)]
-    motion = probe.motion(temperature, adherence)
-    if not motion.alike():
-        found += [look(probe, named, setting, motion) for look in (_folds, _torn, _ungoverned)]
-    return [advice for advice in found if advice is not None]
+    misses = _misses(probe, named, setting)
+    found = [] if misses is None else [misses]
+    for kind, amount, place, near, better in probe.core.advise(probe.q, probe.turns, setting.temperature, adherence):
+        at = probe.places[place]
+        if kind == "ungoverned":
+            away = float(np.linalg.norm(at - probe.p[near[0]]))
+            found.append(
+                _advice("ungoverned", _ungoverned(named[near[0]], at, away, amount), named, near[:1], at, away)
+            )
+            continue
+        help = _better(better) or _shape_aware(probe, setting, kind)
+        if kind == "folds":
+            help = help or "move the control points there less far towards or past each other"
+            sentence = (
+                f"{_percent(amount)} of the shape is folded over, most of all near '{named[near[0]]}', at {_at(at)}; "
+            )
+        else:
+            help = help or "move them less far apart, or put control points between them"
+            sentence = (
+                f"the shape is torn between '{named[near[0]]}' and '{named[near[1]]}', stretched up to {amount:.0f} "
+                f"times at {_at(at)}; "
+            )
+        near = near if kind == "torn" else near[:1]
+        found.append(_advice(cast(Kind, kind), sentence + help, named, near, at, amount))
+    return found
 
 
 @dataclass(frozen=True)
@@ -133,7 +147,7 @@ class _Setting:
 
 def _misses(probe: Probe, names: tuple[str, ...], setting: _Setting) -> Advice | None:
     """Control points that stop short of their targets."""
-    distance = probe.missed(probe.transform, setting.temperature, setting.adherence)
+    distance = probe.missed(setting.temperature, setting.adherence)
     longest = float(np.linalg.norm(probe.q - probe.p, axis=1).max())
     allowed = ARRIVED * probe.side
     if setting.adherence == 0:
@@ -150,81 +164,45 @@ def _misses(probe: Probe, names: tuple[str, ...], setting: _Setting) -> Advice |
 
 def _what_arrives(probe: Probe, setting: _Setting) -> str:
     """What takes the control points to their targets."""
-    t = setting.temperature
-    tried: list[tuple[str, Transform, float]] = [
-        ("", probe.transform, t),
-        (f" at temperature {t / 2:g}", probe.transform, t / 2),
-        (" with the affine transform", "affine", t),
-    ]
-    for how, transform, temperature in tried:
-        if probe.missed(transform, temperature, 1.0).max() <= ARRIVED * probe.side:
-            return f"exact handles arrive{how}"
+    if probe.exact.aim_carefully(probe.q, setting.temperature, **probe.carried).soft is None:
+        return "exact handles arrive"
+    remedy = probe.exact.remedy(probe.q, setting.temperature, **probe.carried)
+    if remedy is not None:
+        return f"exact handles arrive {remedy}"
     return "even exact handles, a lower temperature or the affine transform do not take them there: move them less"
 
 
-def _folds(probe: Probe, names: tuple[str, ...], setting: _Setting, motion: Motion) -> Advice | None:
-    """Places where space is turned inside out."""
-    part = motion.folded_part()
-    if part <= FOLDED:
-        return None
-    worst = int(motion.turned().argmin())
-    near = _governing(probe, worst, setting)[:1]
-    sentence = (
-        f"{_percent(part)} of the shape is folded over, most of all near '{names[near[0]]}', at "
-        f"{_at(probe.places[worst])}; "
-    )
-    help = _better(probe, setting, Motion.folded_part, part)
-    sentence += help or "move the control points there less far towards or past each other"
-    return _advice("folds", sentence, names, near, probe.places[worst], part)
-
-
-def _torn(probe: Probe, names: tuple[str, ...], setting: _Setting, motion: Motion) -> Advice | None:
-    """Places where weights switch between control points that move apart."""
-    part, stretch = motion.torn_part(), motion.stretch()
-    if part <= TORN:
-        return None
-    worst = int(stretch.argmax())
-    near = _governing(probe, worst, setting)[:2]
-    sentence = (
-        f"the shape is torn between '{names[near[0]]}' and '{names[near[-1]]}', stretched up to "
-        f"{stretch[worst]:.0f} times at {_at(probe.places[worst])}; "
-    )
-    help = _better(probe, setting, Motion.torn_part, part)
-    sentence += help or "move them less far apart, or put control points between them"
-    return _advice("torn", sentence, names, near, probe.places[worst], stretch[worst])
-
-
-def _ungoverned(probe: Probe, names: tuple[str, ...], _: _Setting, motion: Motion) -> Advice | None:
+def _ungoverned(name: str, place: Array, away: float, spacings: float) -> str:
     """A part that moves, and is far from all control points."""
-    far, nearest = probe.far()
-    moves = np.linalg.norm(motion.positions - probe.places, axis=1) > MOVED * probe.side
-    worst = int(np.where(moves, far, 0.0).argmax())
-    if not moves[worst] or far[worst] <= FAR:
-        return None
-    near, place = int(nearest[worst]), probe.places[worst]
-    distance = float(np.linalg.norm(place - probe.p[near]))
-    sentence = (
-        f"no control point governs the part around {_at(place)}, which moves all the same: the nearest, "
-        f"'{names[near]}', is {distance:.3g} away, {far[worst]:.1f} times as far as they are from each other; "
-        "put a control point there"
+    return (
+        f"no control point governs the part around {_at(place)}, which moves all the same: the nearest, '{name}', is "
+        f"{away:.3g} away, {spacings:.1f} times as far as they are from each other; put a control point there"
     )
-    return _advice("ungoverned", sentence, names, [near], place, distance)
 
 
-def _better(probe: Probe, setting: _Setting, part: Callable[[Motion], float], now: float) -> str:
-    """Which other setting at least halves a part of the shape, if one does."""
-    t, adherence = setting.temperature, setting.adherence
-    tried = [(other, adherence, f"at temperature {other:g}") for other in (1.0, t / 2, t * 2) if other != t]
-    if adherence > 0:
-        tried.append((t, 0.0, "without exact handles"))
-    parts = [part(probe.motion(other, a)) for other, a, _ in tried]
-    best = int(np.argmin(parts))
-    return f"{tried[best][2]} it is {_percent(parts[best])}" if parts[best] <= now / 2 else ""
+def _better(found: tuple[float | None, float] | None) -> str:
+    """What the core has found to at least halve it, in words."""
+    if found is None:
+        return ""
+    temperature, part = found
+    how = "without exact handles" if temperature is None else f"at temperature {temperature:g}"
+    return f"{how} it is {_percent(part)}"
 
 
-def _governing(probe: Probe, place: int, setting: _Setting) -> list[int]:
-    """The control points by their weight at a place, the heaviest first."""
-    return [int(i) for i in (-probe.weight(place, setting.temperature)).argsort(kind="stable")]
+def _shape_aware(probe: Probe, setting: _Setting, kind: str) -> str:
+    """Whether weights that know the shape at least halve what is folded or torn, in words; nothing if not."""
+    if isinstance(probe.weights, ShapeAwareWeights) or probe.p.shape[1] == 1:
+        return ""
+    try:
+        weights = ShapeAwareWeights.fit(probe.p, probe.x, probe.faces)
+    except NeuralMLSError:  # no SciPy, or no size to measure by
+        return ""
+    other = Probe(probe.x, probe.faces, weights, probe.q, probe.transform, **probe.carried)
+    now, then = (
+        each.core.parts(each.q, each.turns, setting.temperature, setting.adherence)[kind == "torn"]
+        for each in (probe, other)
+    )
+    return f"with shape-aware weights it is {_percent(then)}" if then <= now / 2 else ""
 
 
 def _advice(kind: Kind, sentence: str, names: tuple[str, ...], near: list[int], where: Array, amount: float) -> Advice:

@@ -88,6 +88,29 @@ class Deformer:
     def _handles(self) -> ExactHandles:
         return ExactHandles(self._weights, transform=self._transform)
 
+    def prepare(self, temperature: float = 1.0) -> None:
+        """Compute the weights `softmax(logits / T)` now, so that the first frame at T takes no longer than the next.
+
+        Parameters
+        ----------
+        temperature : float > 0
+            `T`, of the frames that follow.
+
+        Raises
+        ------
+        ArgumentError
+            The temperature is not above 0.
+
+        Examples
+        --------
+        >>> from neuralmls import InverseDistanceWeights
+        >>> deformer = Deformer([[0.5, 0.5, 0.0]], InverseDistanceWeights([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
+        >>> deformer.prepare()
+        >>> deformer.deform([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]).tolist()
+        [[0.5, 0.5, 0.0]]
+        """
+        self._core.prepare(as_number("temperature", temperature, 0))
+
     @overload
     def deform(
         self,

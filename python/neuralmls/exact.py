@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +13,27 @@ from neuralmls.arrays import as_number, as_points
 from neuralmls.errors import ArgumentError
 from neuralmls.protocol import Transform, Weights
 from neuralmls.turns import Rotations, Scales, as_turns
+
+Array: TypeAlias = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Soft:
+    """Why control points are left where plain moving least squares takes them.
+
+    Attributes
+    ----------
+    reason : "shared" or "unreached"
+        One has too little of the weight at its own place, or would stay off its target all the same.
+    control_point : int
+        Which one.
+    amount : float
+        The weight that it has there, or the distance that it would stay off.
+    """
+
+    reason: Literal["shared", "unreached"]
+    control_point: int
+    amount: float
 
 
 @dataclass(frozen=True)
@@ -24,10 +46,13 @@ class Aim:
         The effective targets `q'`, to be handed to `Deformer.deform` in the place of the targets.
     misses : (m,) float64
         The distance between where each control point arrives and where it was to go.
+    soft : Soft or None
+        Why `ExactHandles.aim_carefully` has left them soft; None where it has not.
     """
 
-    targets: NDArray[np.float64]
-    misses: NDArray[np.float64]
+    targets: Array
+    misses: Array
+    soft: Soft | None = None
 
 
 class ExactHandles:
@@ -103,9 +128,71 @@ class ExactHandles:
         ArgumentError
             The targets are not as many finite points as there are control points; a number is out of its range.
         """
+        aimed, misses, _ = self._core.aim(*self._checked(targets, temperature, rotations, scales), adherence)
+        return Aim(aimed, misses)
+
+    def aim_carefully(
+        self,
+        targets: ArrayLike,
+        temperature: float = 1.0,
+        adherence: float = 1.0,
+        *,
+        rotations: Rotations = None,
+        scales: Scales = None,
+    ) -> Aim:
+        """Return the effective targets where they are worth it, else the targets themselves, and why.
+
+        Control points are left soft where one has less than 0.25 of the weight at its own place, so that it would be
+        aimed far past its target and the shape would suffer, and where one would not arrive (to 1e-6 of the targets'
+        extent). What `neuralmls deform` and the browser editor do.
+
+        Parameters
+        ----------
+        targets, temperature, adherence, rotations, scales
+            As `aim` has them.
+
+        Raises
+        ------
+        ArgumentError
+            As `aim`.
+        """
+        aimed, misses, soft = self._core.aim_carefully(
+            *self._checked(targets, temperature, rotations, scales), adherence
+        )
+        return Aim(aimed, misses, None if soft is None else Soft(*soft))  # type: ignore[arg-type]
+
+    def remedy(
+        self,
+        targets: ArrayLike,
+        temperature: float = 1.0,
+        adherence: float = 1.0,
+        *,
+        rotations: Rotations = None,
+        scales: Scales = None,
+    ) -> str | None:
+        """Return with what the control points would arrive, in words; None where nothing that was tried helps.
+
+        Half the temperature is tried, and then the affine transform.
+
+        Parameters
+        ----------
+        targets, temperature, adherence, rotations, scales
+            As `aim` has them.
+
+        Raises
+        ------
+        ArgumentError
+            As `aim`.
+        """
+        found = self._core.remedy(*self._checked(targets, temperature, rotations, scales), adherence)
+        if found is None:
+            return None
+        return "with the affine transform" if found[1] is None else f"at temperature {found[1]:g}"
+
+    def _checked(
+        self, targets: ArrayLike, temperature: float, rotations: Rotations, scales: Scales
+    ) -> tuple[Array, Array | None, float]:
         q = as_points("targets", targets, self._p.shape[1])
         if len(q) != len(self._p):
             raise ArgumentError(f"targets: expected {len(self._p)} of them, found {len(q)}")
-        turns = as_turns(rotations, scales, *q.shape)
-        aimed, misses = self._core.aim(q, turns, as_number("temperature", temperature, 0), adherence)
-        return Aim(aimed, misses)
+        return q, as_turns(rotations, scales, *q.shape), as_number("temperature", temperature, 0)

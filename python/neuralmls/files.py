@@ -69,7 +69,8 @@ def write_together(files: Mapping[Path, bytes | Path]) -> None:
     Raises
     ------
     FileError
-        One cannot be written. All are then as they were.
+        One cannot be written. All are then as they were, unless it is a name that cannot be taken (that of another
+        person's file in a sticky folder): then those before it have theirs.
     """
     complete: list[tuple[Path, Path, Path]] = []
     try:

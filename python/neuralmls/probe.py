@@ -1,63 +1,25 @@
-"""A deformation looked at closely, at places all over the shape, in several settings."""
+"""A deformation looked at closely, at places all over the shape, in several settings (crates/core/src/advice.rs)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from neuralmls import _core
 from neuralmls.arrays import as_points, box_around
 from neuralmls.deformer import Deformer
 from neuralmls.errors import ArgumentError
 from neuralmls.exact import ExactHandles
-from neuralmls.metrics import beside, jacobians
 from neuralmls.placement import sample_surface
 from neuralmls.protocol import Transform, Weights
-from neuralmls.turns import Rotations, Scales
-from neuralmls.weights.softmax import softmax
+from neuralmls.turns import Rotations, Scales, as_turns
 
 Array: TypeAlias = NDArray[np.float64]
 
-# So many places on the shape, and differences over this part of the longest side, so that a band too narrow for the
-# places to lie in is still seen from its sides.
-PLACES, STEP = 4000, 2.5e-3
-# A stretch may be so many times that of most of the shape.
-STRETCH = 4.0
-# Everything moves as one if the Jacobians differ by no more.
-ALIKE = 1e-6
-
-
-@dataclass(frozen=True)
-class Motion:
-    """What a deformation does at the places: where they go (k, d), and the Jacobians there (k, d, d)."""
-
-    positions: Array
-    jacobians: Array
-
-    def alike(self) -> bool:
-        """Whether everything moves as one."""
-        return bool(np.ptp(self.jacobians, axis=0).max() < ALIKE)
-
-    def turned(self) -> Array:
-        """The determinants, (k,)."""
-        determinants: Array = np.linalg.det(self.jacobians)
-        return determinants
-
-    def stretch(self) -> Array:
-        """The greatest stretch at each place, in that of most places if that is above 1, (k,)."""
-        stretch = np.linalg.norm(self.jacobians, ord=2, axis=(1, 2))
-        relative: Array = stretch / max(1.0, float(np.median(stretch)))
-        return relative
-
-    def folded_part(self) -> float:
-        """The part of the places that are turned inside out."""
-        return float((self.turned() <= 0).mean())
-
-    def torn_part(self) -> float:
-        """The part of the places that are stretched beyond `STRETCH`."""
-        return float((self.stretch() > STRETCH).mean())
+# So many places on the shape.
+PLACES = 4000
 
 
 class _Turns(TypedDict):
@@ -94,51 +56,27 @@ class Probe:
         scales: Scales = None,
     ) -> None:
         self.p = as_points("weights.control_points", weights.control_points)
-        points = as_points("x", x, self.p.shape[1])
-        if not len(points):
+        self.x, self.faces, self.weights, self.transform = as_points("x", x, self.p.shape[1]), faces, weights, transform
+        if not len(self.x):
             raise ArgumentError("x: expected at least one point, found none")
-        self.q = as_points("targets", targets, points.shape[1])
-        self.transform = transform
-        self._turns: _Turns = {"rotations": rotations, "scales": scales}
-        self.side = 2 * box_around(points)[1]
-        self.places = _places(points, faces)
-        self._weights = weights
-        self._exact = ExactHandles(weights, transform=transform)
-        self._deformer = Deformer(self.places, weights, transform=transform)
-        self._step = STEP * self.side
-        self._beside = [Deformer(place, weights, transform=transform) for place in beside(self.places, self._step)]
-
-    def motion(self, temperature: float, adherence: float) -> Motion:
-        """What the deformation does at the places."""
-        aimed = self._exact.aim(self.q, temperature, adherence, **self._turns).targets
-        deformed, *values = (
-            np.asarray(deformer.deform(aimed, temperature, **self._turns), np.float64)
-            for deformer in (self._deformer, *self._beside)
+        self.q = as_points("targets", targets, self.p.shape[1])
+        self.carried: _Turns = {"rotations": rotations, "scales": scales}
+        self.turns = as_turns(rotations, scales, *self.p.shape)
+        self.side = 2 * box_around(self.x)[1]
+        self.places = _places(self.x, faces)
+        self.exact = ExactHandles(weights, transform=transform)
+        self._handles = Deformer(self.p, weights, transform=transform)
+        points, own = (
+            np.ascontiguousarray(weights.logits(at), np.float32)
+            for at in (_core.Probe.points(self.places, self.side), self.p)
         )
-        return Motion(deformed, jacobians(values, self._step))
+        self.core = _core.Probe(self.p, self.places, self.side, points, own, transform)
 
-    def missed(self, transform: Transform, temperature: float, adherence: float) -> Array:
+    def missed(self, temperature: float, adherence: float) -> Array:
         """How far each control point ends from its target, (m,)."""
-        exact = ExactHandles(self._weights, transform=transform)
-        aimed = exact.aim(self.q, temperature, adherence, **self._turns).targets
-        arrived = Deformer(self.p, self._weights, transform=transform).deform(aimed, temperature, **self._turns)
+        aim = self.exact.aim(self.q, temperature, adherence, **self.carried)
+        arrived = self._handles.deform(aim.targets, temperature, **self.carried)
         return np.asarray(np.linalg.norm(arrived - self.q, axis=1))
-
-    def weight(self, place: int, temperature: float) -> Array:
-        """The weights of the control points at a place, (m,)."""
-        weights: Array = softmax(self._weights.logits(self.places[place : place + 1]), temperature)[0]
-        return weights
-
-    def far(self) -> tuple[Array, NDArray[np.int64]]:
-        """How far each place is from the nearest control point, and which that is.
-
-        The distance is in the median distance of a control point to the next one; 0 if there is but one.
-        """
-        distance, nearest = _nearest(self.places, self.p)
-        if len(self.p) < 2:
-            return 0 * distance, nearest
-        spacing = np.median([_nearest(p[None], np.delete(self.p, i, 0))[0] for i, p in enumerate(self.p)])
-        return distance / spacing, nearest
 
 
 def _places(x: Array, faces: ArrayLike | None) -> Array:
@@ -147,9 +85,3 @@ def _places(x: Array, faces: ArrayLike | None) -> Array:
     if len(samples):
         return samples
     return x if len(x) <= PLACES else x[np.sort(np.random.default_rng(0).permutation(len(x))[:PLACES])]
-
-
-def _nearest(x: Array, p: Array) -> tuple[Array, NDArray[np.int64]]:
-    """The distance to the nearest of the points `p`, and which it is, for each of `x`."""
-    distances = np.stack([np.linalg.norm(x - point, axis=1) for point in p])
-    return distances.min(axis=0), distances.argmin(axis=0)

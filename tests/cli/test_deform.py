@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 
 import numpy as np
 import pytest
@@ -35,17 +36,21 @@ def test_only_positions_change(run, here):
 
 @pytest.mark.parametrize("transform", ["rigid", "similarity", "affine"])
 @pytest.mark.parametrize("kind", ["neural", "inverse-distance"])
-def test_positions_are_those_of_the_package(run, here, kind, transform):
+@pytest.mark.parametrize("handles", [(), ("--exact",), ("--no-exact",)])
+def test_positions_are_those_of_the_package(run, here, kind, transform, handles):
     options = ("--weights", kind, *(QUICK if kind == "neural" else ("--alpha", "0.75", "--epsilon", "0.01")))
     moves = ("--move", "top=0.25,1,0", "--move", "side=0,0,-0.5")
-    assert run(*DEFORM, "-o", "out.obj", *options, *moves, "--transform", transform, "--temperature", "0.8").code == 0
+    options += ("--transform", transform, "--temperature", "0.8", *handles)
+    assert run(*DEFORM, "-o", "out.obj", *options, *moves).code == 0
     shape, points = nm.read("shape.obj"), nm.ControlPoints.read("points.csv")
     points = points.moved({"top": [0.25, 1, 0], "side": [0, 0, -0.5]})
     if kind == "neural":
         weights = nm.NeuralWeights.fit(points.sources, bounds=shape.bounds, width=32, steps=20)
     else:
         weights = nm.InverseDistanceWeights(points.sources, bounds=shape.bounds, alpha=0.75, epsilon=0.01)
-    expected = nm.Deformer(shape.positions, weights, transform=transform).deform(points.targets, 0.8)
+    exact = nm.ExactHandles(weights, transform=transform)
+    aim = (exact.aim if handles else exact.aim_carefully)(points.targets, 0.8, float(handles != ("--no-exact",)))
+    expected = nm.Deformer(shape.positions, weights, transform=transform).deform(aim.targets, 0.8)
     np.testing.assert_allclose(nm.read("out.obj").positions, expected, rtol=0, atol=1e-6)
 
 
@@ -144,7 +149,7 @@ def test_distances_to_targets_are_where_the_control_points_arrive(run):
     """Classic weights meet every target; a network after few steps does not, and is said not to."""
     exact = json.loads(run(*DEFORM, "-o", "a.obj", *CLASSIC, "--move", "top=0,1,0", "--json").out)
     assert max(point["distance_to_target"] for point in exact["control_points"]) < 1e-6
-    short = json.loads(run(*DEFORM, "-o", "b.obj", "--steps", "1", "--move", "top=0,1,0", "--json").out)
+    short = json.loads(run(*DEFORM, "-o", "b.obj", "--steps", "1", "--no-exact", "--move", "top=0,1,0", "--json").out)
     points = nm.ControlPoints.read("points.csv").moved({"top": [0, 1, 0]})
     weights = nm.NeuralWeights.fit(points.sources, bounds=nm.read("shape.obj").bounds, steps=1)
     arrived = nm.Deformer(points.sources, weights).deform(points.targets)
@@ -271,25 +276,58 @@ def test_real_shapes_from_placement_to_result(run, data, name):
     assert len(nm.read(output).positions) == len(nm.read(shape).positions)
 
 
-def test_exact_control_points_arrive(run):
-    moved = (*DEFORM, "--width", "128", "--move", "top=0,0.5,0.2", "--json")
-    soft = json.loads(run(*moved, "-o", "soft.obj").out)
-    ran = run(*moved, "-o", "exact.obj", "--exact")
+def test_control_points_arrive_unless_they_are_to_be_soft(run, here):
+    moved = (*DEFORM, "--width", "128", "--move", "top=0,0.5,0.2")
+    soft = json.loads(run(*moved, "-o", "soft.obj", "--json", "--no-exact").out)
+    ran = run(*moved, "-o", "plain.obj", "--json")
     assert ran.err == ""
-    exact = json.loads(ran.out)
-    assert (soft["exact"], exact["exact"]) == (False, True)
+    plain = json.loads(ran.out)
+    said = run(*moved, "-o", "exact.obj", "--exact").out
+    assert [(told["adherence"], told["kept_soft"]) for told in (soft, plain)] == [(0.0, None), (1.0, None)]
     assert max(point["distance_to_target"] for point in soft["control_points"]) > 0.01
-    assert max(point["distance_to_target"] for point in exact["control_points"]) < 1e-6
+    assert max(point["distance_to_target"] for point in plain["control_points"]) < 1e-6
+    assert (here / "plain.obj").read_bytes() == (here / "exact.obj").read_bytes()
+    assert (here / "plain.obj").read_bytes() != (here / "soft.obj").read_bytes()
+    assert re.search(r"handles +exact\n", said)
+
+
+def test_control_points_that_own_little_are_left_soft_with_what_would_help(run, here):
+    (here / "six.csv").write_text(
+        "name,x,y,z\nfoot,0.5,0,0.5\nside,1,1,0.5\ntop,0.5,2,0.5\na,0,0,1.5\nb,1,2,0\nc,0,2,1.5\n"
+    )
+    moved = ("deform", "shape.obj", "--points", "six.csv", "--width", "128", "--move", "top=0,0.5,0.2", "--temperature")
+    soft = run(*moved, "30", "-o", "soft.obj", "--no-exact")
+    ran = run(*moved, "30", "-o", "plain.obj")
+    assert (ran.code, ran.err) == (0, "")
+    assert (here / "plain.obj").read_bytes() == (here / "soft.obj").read_bytes()
+    assert max(map(len, ran.out.splitlines())) <= 80
+    told = json.loads(run(*moved, "30", "-o", "plain.obj", "--json", "--force").out)
+    assert told["adherence"] == 0
+    assert re.fullmatch(r"'\w+' has only 0\.\d+ of the weight at its own place.*", told["kept_soft"])
+    for line in ("left soft:", *told["kept_soft"].split("; ")):
+        assert line in ran.out
+    assert "left soft" not in soft.out
+    # What it says would help does.
+    told = json.loads(run(*moved, "10", "-o", "warm.obj", "--json").out)
+    assert told["adherence"] == 0
+    assert told["kept_soft"].endswith("; at temperature 5 they arrive")
+    assert json.loads(run(*moved, "5", "-o", "cool.obj", "--json").out)["adherence"] == 1
 
 
 def test_exact_control_points_that_cannot_arrive_are_named(run, here):
     (here / "torn.csv").write_text(
         "name,x,y,z,target_x,target_y,target_z\na,0,0,0,0,0,0\nb,0.01,0,0,3,0,0\nc,0,2,0,0,2,0\nd,1,2,1.5,1,2,1.5\n"
     )
-    ran = run("deform", "shape.obj", "--points", "torn.csv", "-o", "out.obj", *QUICK, "--exact")
+    torn = ("deform", "shape.obj", "--points", "torn.csv", *QUICK)
+    ran = run(*torn, "-o", "out.obj", "--exact")
     assert ran.code == 0
     assert "control points do not arrive exactly: 'b' by" in ran.err or "'a' by" in ran.err
     assert "--transform affine" in ran.err
+    # Unless one insists they are left soft.
+    assert json.loads(run(*torn, "-o", "plain.obj", "--json").out)["adherence"] == 0
+    assert run(*torn, "-o", "soft.obj", "--no-exact").err == ""
+    assert (here / "plain.obj").read_bytes() == (here / "soft.obj").read_bytes()
+    assert (here / "plain.obj").read_bytes() != (here / "out.obj").read_bytes()
 
 
 def test_check_says_what_is_likely_bad_and_ends_with_0(run, here):

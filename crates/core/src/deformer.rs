@@ -211,6 +211,19 @@ impl Deformer {
         Ok(())
     }
 
+    /// Computes the weights at `temperature` now, so that the first frame at it takes no longer than the next ones. (In 1D and 2D
+    /// nothing is kept between frames.)
+    ///
+    /// # Errors
+    /// Where the temperature is not above 0.
+    pub fn prepare(&self, temperature: f64) -> Result<(), Error> {
+        check_temperature(temperature)?;
+        if self.dim == 3 {
+            self.weights(temperature);
+        }
+        Ok(())
+    }
+
     /// The packed weights at `temperature`: those of the last frame, or new ones in their place.
     fn weights(&self, temperature: f64) -> Arc<PackedWeights> {
         // Not locked while they are computed: this thread may meanwhile take up another frame of the same deformer.

@@ -8,11 +8,12 @@
 //! ```
 //!
 //! by `q' <- q' + (q - f(p; q'))`, with Anderson's acceleration (Anderson 1965; Walker, Ni 2011). The unknowns are the targets alone, so
-//! it costs a few frames of as many points as there are control points.
+//! it costs a few frames of as many points as there are control points. [`ExactHandles::aim_carefully`] does so only where it is worth it.
 
 use crate::deformer::{Deformer, Pose};
 use crate::error::Error;
 use crate::mls::Transform;
+use crate::softmax;
 
 /// Differences that the acceleration looks back on.
 const HISTORY: usize = 6;
@@ -22,6 +23,11 @@ const MOST: usize = 100;
 const ARRIVED: f64 = 1e-11;
 /// Halvings of a step that does not help, until no shorter one is tried.
 const HALVINGS: i32 = 8;
+/// With less of the weight at its own place a control point is aimed so far past its target that the shape suffers: of the published
+/// displacements, those with 0.15 or less fold and miss, those with 0.28 or more do neither (docs/beyond-the-paper.md).
+const OWNED: f64 = 0.25;
+/// For the careful aim a handle has arrived when it misses by no more than this part of the targets' extent.
+const REACHED: f64 = 1e-6;
 
 /// The control points as points that are deformed themselves.
 pub struct ExactHandles {
@@ -37,6 +43,26 @@ pub struct Aim {
     pub targets: Vec<f64>,
     /// How far each control point stays from where it was to go, m.
     pub misses: Vec<f64>,
+    /// Why a careful aim has left them soft; none where it has not.
+    pub soft: Option<Soft>,
+}
+
+/// Why control points are left where plain MLS takes them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Soft {
+    /// The control point has only so much of the weight at its own place.
+    Shared(usize, f64),
+    /// The control point would stay so far from its target all the same.
+    Unreached(usize, f64),
+}
+
+/// What would let control points arrive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Remedy {
+    /// Another temperature.
+    Temperature(f64),
+    /// The affine transform.
+    Affine,
 }
 
 impl ExactHandles {
@@ -47,6 +73,83 @@ impl ExactHandles {
     pub fn new(p: &[f64], dim: usize, logits: Vec<f32>, transform: Transform) -> Result<ExactHandles, Error> {
         let handles = Deformer::new(p.to_vec(), dim, p, logits, transform)?;
         Ok(ExactHandles { handles, dim, p: p.to_vec() })
+    }
+
+    /// Lets the control points do something else to the shape locally.
+    pub fn set_transform(&mut self, transform: Transform) {
+        self.handles.set_transform(transform);
+    }
+
+    /// What the weight function says of each control point, m x m.
+    pub fn logits(&self) -> &[f32] {
+        self.handles.logits()
+    }
+
+    /// Where the control points go when they are pulled to the targets of `pose` (m x dim): near them.
+    ///
+    /// # Errors
+    /// As [`Deformer::deform`].
+    pub fn land<'a>(&self, pose: impl Into<Pose<'a>>, temperature: f64) -> Result<Vec<f64>, Error> {
+        Ok(self.handles.deform(pose, temperature, false, &mut |_| true)?.positions)
+    }
+
+    /// [`ExactHandles::aim`] where it is worth it: the targets themselves, and why, where a control point has too little of the
+    /// weight at its own place, or would not arrive.
+    ///
+    /// # Errors
+    /// As [`ExactHandles::aim`].
+    pub fn aim_carefully<'a>(
+        &self,
+        pose: impl Into<Pose<'a>>,
+        temperature: f64,
+        adherence: f64,
+    ) -> Result<Aim, Error> {
+        let pose = pose.into();
+        let mut soft = self.aim(pose, temperature, 0.0)?;
+        soft.misses = distances(&self.land(pose, temperature)?, pose.q, self.dim);
+        let reached = REACHED * self.extent(pose.q);
+        let (_, miss) = greatest(soft.misses.iter().copied());
+        if adherence == 0.0 || miss <= reached {
+            return Ok(soft);
+        }
+        let m = soft.misses.len();
+        let mut weights = vec![0.0; m];
+        let (least, lost) = greatest(self.logits().chunks_exact(m).enumerate().map(|(i, logits)| {
+            softmax::weights(logits, temperature, &mut weights);
+            1.0 - weights[i]
+        }));
+        if 1.0 - lost < OWNED {
+            soft.soft = Some(Soft::Shared(least, 1.0 - lost));
+            return Ok(soft);
+        }
+        let aim = self.aim(pose, temperature, adherence)?;
+        let (worst, miss) = greatest(aim.misses.iter().copied());
+        if miss > reached {
+            soft.soft = Some(Soft::Unreached(worst, miss));
+            return Ok(soft);
+        }
+        Ok(aim)
+    }
+
+    /// What would let a careful aim arrive, tried: half the temperature, else the affine transform.
+    ///
+    /// # Errors
+    /// As [`ExactHandles::aim`].
+    pub fn remedy<'a>(
+        &self,
+        pose: impl Into<Pose<'a>>,
+        temperature: f64,
+        adherence: f64,
+    ) -> Result<Option<Remedy>, Error> {
+        let pose = pose.into();
+        let arrives = |handles: &ExactHandles, temperature: f64| -> Result<bool, Error> {
+            Ok(handles.aim_carefully(pose, temperature, adherence)?.soft.is_none())
+        };
+        if arrives(self, temperature / 2.0)? {
+            return Ok(Some(Remedy::Temperature(temperature / 2.0)));
+        }
+        let affine = ExactHandles::new(&self.p, self.dim, self.logits().to_vec(), Transform::Affine)?;
+        Ok(arrives(&affine, temperature)?.then_some(Remedy::Affine))
     }
 
     /// The effective targets for the targets of `pose` (m x dim), at `temperature` > 0; its turns are taken as they are.
@@ -61,9 +164,7 @@ impl ExactHandles {
         if !(0.0..=1.0).contains(&adherence) {
             return Err(Error::argument("adherence", format!("expected 0 to 1, found {adherence}")));
         }
-        let arrive = |targets: &[f64]| -> Result<Vec<f64>, Error> {
-            Ok(self.handles.deform(Pose { q: targets, turns }, temperature, false, &mut |_| true)?.positions)
-        };
+        let arrive = |targets: &[f64]| self.land(Pose { q: targets, turns }, temperature);
         let soft = arrive(q)?;
         let goal: Vec<f64> = soft.iter().zip(q).map(|(soft, q)| soft + adherence * (q - soft)).collect();
         let rest = |arrived: Vec<f64>| -> Vec<f64> { goal.iter().zip(arrived).map(|(g, a)| g - a).collect() };
@@ -93,9 +194,8 @@ impl ExactHandles {
                 now = best.clone();
             }
         }
-        let misses =
-            best.rest.chunks_exact(self.dim).map(|r| r.iter().map(|v| v * v).sum::<f64>().sqrt()).collect();
-        Ok(Aim { targets: best.targets, misses })
+        let misses = distances(&best.rest, &vec![0.0; q.len()], self.dim);
+        Ok(Aim { targets: best.targets, misses, soft: None })
     }
 
     /// The longest side of the box around the control points and the targets.
@@ -108,6 +208,17 @@ impl ExactHandles {
         };
         (0..self.dim).map(side).fold(0.0, f64::max)
     }
+}
+
+/// How far each of the points `a` is from that of `b`.
+fn distances(a: &[f64], b: &[f64], dim: usize) -> Vec<f64> {
+    let square = |(a, b): (&[f64], &[f64])| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+    a.chunks_exact(dim).zip(b.chunks_exact(dim)).map(|pair| square(pair).sqrt()).collect()
+}
+
+/// The greatest value, the first of equals, and where it is.
+pub(crate) fn greatest(values: impl Iterator<Item = f64>) -> (usize, f64) {
+    values.enumerate().fold((0, f64::NEG_INFINITY), |most, (i, v)| if v > most.1 { (i, v) } else { most })
 }
 
 /// Targets that were tried, and what they leave.

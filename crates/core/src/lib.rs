@@ -19,6 +19,7 @@
 //!
 //! Points are flat slices of `f64`, `dim` coordinates each (1, 2 or 3), in one coordinate system throughout.
 
+pub mod advice;
 pub mod deformer;
 mod error;
 pub mod exact;
@@ -36,7 +37,7 @@ pub mod tree;
 
 pub use deformer::{Deformed, Deformer, Pose};
 pub use error::Error;
-pub use exact::{Aim, ExactHandles};
+pub use exact::{Aim, ExactHandles, Remedy, Soft};
 pub use frame::Frame;
 pub use logits::inverse_distance::InverseDistance;
 pub use logits::neural::{Fit, Layer, Network, Samples, Schedule, Training};

@@ -49,6 +49,11 @@ impl Deformer {
         Ok(Deformer { inner, dim })
     }
 
+    /// Computes the weights at a temperature.
+    fn prepare(&self, py: Python<'_>, temperature: f64) -> PyResult<()> {
+        py.detach(|| self.inner.prepare(temperature)).map_err(|error| from_core(error, None))
+    }
+
     /// Writes the positions into `out`, n x d, or into a new array.
     #[pyo3(signature = (q, turns, temperature, maps, out, progress))]
     #[allow(clippy::too_many_arguments)]

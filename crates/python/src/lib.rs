@@ -2,6 +2,7 @@
 //!
 //! The package's own modules are the only callers; they check and explain arguments before they come here.
 
+mod advice;
 mod deformer;
 mod errors;
 mod exact;
@@ -14,6 +15,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _core {
+    #[pymodule_export]
+    use crate::advice::Probe;
     #[pymodule_export]
     use crate::deformer::Deformer;
     #[pymodule_export]

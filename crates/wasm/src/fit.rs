@@ -1,10 +1,12 @@
 //! Weights, and points bound to them.
 
 use js_sys::{Array, Float32Array, Float64Array};
+use neuralmls_core::advice::{Better, Kind, Probe};
 use neuralmls_core::progress::Progress;
-use neuralmls_core::{Deformer, Error, InverseDistance, PointTree, Pose, Transform};
+use neuralmls_core::{Deformer, Error, Frame, InverseDistance, PointTree, Pose, Transform};
 use wasm_bindgen::prelude::*;
 
+use crate::handles::{named, Handles};
 use crate::refused;
 
 enum Function {
@@ -69,8 +71,14 @@ impl Weights {
 /// The points of a shape, and the control points themselves, bound to weights.
 #[wasm_bindgen]
 pub struct Fit {
+    weights: Weights,
+    dim: usize,
+    /// The longest side of the box.
+    side: f64,
     points: Deformer,
-    control_points: Deformer,
+    control_points: Handles,
+    /// Made when it is first asked for.
+    probe: Option<Probe>,
 }
 
 #[wasm_bindgen]
@@ -85,22 +93,85 @@ impl Fit {
         Float32Array::from(self.control_points.logits())
     }
 
-    /// Where the control points land when they are pulled to `q` (m x dim) and turned by `turns` (m x dim x dim, NaN for those that are
-    /// not; undefined: none is).
+    /// [`Handles::aim`] of the control points: what to give to [`Fit::deform`] for the targets `q`.
     ///
     /// # Errors
-    /// Where `q` or `turns` does not fit, or the temperature is not above 0.
+    /// Where `q` does not fit, or a number is out of its range.
+    pub fn aim(
+        &mut self,
+        q: &[f64],
+        turns: Option<Vec<f64>>,
+        transform: &str,
+        temperature: f64,
+        adherence: f64,
+    ) -> Result<Float64Array, JsError> {
+        self.control_points.aim(q, turns, transform, temperature, adherence)
+    }
+
+    /// [`Handles::land`] of the control points.
+    ///
+    /// # Errors
+    /// Where `q` does not fit, or a number is out of its range.
     pub fn land(
         &mut self,
         q: &[f64],
         turns: Option<Vec<f64>>,
         transform: &str,
         temperature: f64,
-    ) -> Result<Float64Array, JsError> {
-        self.control_points.set_transform(named(transform)?);
+        adherence: f64,
+    ) -> Result<Array, JsError> {
+        self.control_points.land(q, turns, transform, temperature, adherence)
+    }
+
+    /// What is likely bad about the shape when the control points are pulled to `q`, looked at in `places` (k x dim, always the same): for each
+    /// thing its kind, how bad, the worst place, the two control points next to it (their numbers), and what is better: "soft", a temperature,
+    /// or null, with the part that is left.
+    ///
+    /// # Errors
+    /// As [`Fit::land`].
+    pub fn advise(
+        &mut self,
+        places: &[f64],
+        q: &[f64],
+        turns: Option<Vec<f64>>,
+        transform: &str,
+        temperature: f64,
+        adherence: f64,
+    ) -> Result<Array, JsError> {
         let pose = Pose { q, turns: turns.as_deref() };
-        let landed = self.control_points.deform(pose, temperature, false, &mut |_| true).map_err(refused)?;
-        Ok(Float64Array::from(&landed.positions[..]))
+        let used = match self.control_points.aimed(pose, transform, temperature, adherence)?.soft {
+            None => adherence,
+            Some(_) => 0.0,
+        };
+        if self.probe.is_none() {
+            let points = Probe::points(places, self.dim, self.side);
+            let logits = self.weights.logits(&points, None, &mut |_| true).map_err(refused)?;
+            let own = self.control_points.logits().to_vec();
+            let probe =
+                Probe::new(&self.weights.p, self.dim, places, self.side, logits, own, Transform::Rigid);
+            self.probe = Some(probe.map_err(refused)?);
+        }
+        let result = Array::new();
+        if let Some(probe) = &mut self.probe {
+            probe.set_transform(named(transform)?);
+            for advice in probe.advise(pose, temperature, used).map_err(refused)? {
+                let (kind, amount) = match advice.kind {
+                    Kind::Folds(part) => ("folds", part),
+                    Kind::Torn(stretch) => ("torn", stretch),
+                    Kind::Ungoverned(far) => ("ungoverned", far),
+                };
+                let (better, left) = match advice.better {
+                    Some((Better::Temperature(other), left)) => (JsValue::from_f64(other), left),
+                    Some((Better::Soft, left)) => (JsValue::from_str("soft"), left),
+                    None => (JsValue::NULL, 0.0),
+                };
+                let [first, second] = advice.near.map(|i| JsValue::from_f64(i as f64));
+                let place = JsValue::from_f64(advice.place as f64);
+                let told = [JsValue::from_str(kind), JsValue::from_f64(amount), place, first, second, better];
+                result.push(&told.iter().chain([&JsValue::from_f64(left)]).collect::<Array>());
+            }
+        }
+        Ok(result)
     }
 
     /// The points' new positions (n x dim), then their maps (n x dim x dim) if `maps`.
@@ -130,27 +201,18 @@ impl Fit {
 
 impl Fit {
     pub(crate) fn new(
-        weights: &Weights,
+        weights: Weights,
         x: &[f64],
         dim: usize,
+        frame: Frame,
         tree: Option<&PointTree>,
         progress: &mut Progress<'_>,
     ) -> Result<Fit, Error> {
         let p = &weights.p;
         let own = weights.logits(p, None, &mut |_| true)?;
+        let control_points = Handles::of(p, dim, own)?;
         let logits = weights.logits(x, tree, progress)?;
-        Ok(Fit {
-            points: Deformer::new(x.to_vec(), dim, p, logits, Transform::Rigid)?,
-            control_points: Deformer::new(p.clone(), dim, p, own, Transform::Rigid)?,
-        })
-    }
-}
-
-fn named(transform: &str) -> Result<Transform, JsError> {
-    match transform {
-        "rigid" => Ok(Transform::Rigid),
-        "similarity" => Ok(Transform::Similarity),
-        "affine" => Ok(Transform::Affine),
-        other => Err(refused(format!("transform: expected rigid, similarity or affine, found {other}"))),
+        let points = Deformer::new(x.to_vec(), dim, p, logits, Transform::Rigid)?;
+        Ok(Fit { dim, side: 2.0 * frame.half, points, control_points, probe: None, weights })
     }
 }

@@ -4,6 +4,7 @@
 //! stopped by ending their worker.
 
 mod fit;
+mod handles;
 mod points;
 mod shape_file;
 

@@ -62,7 +62,7 @@ impl Points {
     ///
     /// # Errors
     /// Where the weights are of another dimension.
-    pub fn evaluate(&mut self, weights: &Weights, tell: &Function) -> Result<Fit, JsError> {
+    pub fn evaluate(&mut self, weights: Weights, tell: &Function) -> Result<Fit, JsError> {
         let tree = if weights.is_neural() {
             let built = self
                 .tree
@@ -73,6 +73,6 @@ impl Points {
         } else {
             None
         };
-        Fit::new(weights, &self.x, self.dim, tree, &mut reporter(tell)).map_err(refused)
+        Fit::new(weights, &self.x, self.dim, self.frame, tree, &mut reporter(tell)).map_err(refused)
     }
 }

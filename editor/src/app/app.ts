@@ -8,6 +8,7 @@ import { DEFAULT_VIEW, type View } from "../model/view.ts";
 import type { Autosave } from "../storage/autosave.ts";
 import type { Core, Files, OnProgress, Opened } from "../worker/protocol.ts";
 import { servedSession } from "../worker/served.ts";
+import { Advice } from "./advice.ts";
 import type { Display } from "./display.ts";
 import { download, extensionOf, readAll, sort, stemOf } from "./files.ts";
 import type { Sample, State, Toast } from "./state.ts";
@@ -43,6 +44,7 @@ export class App {
     [this.#core, this.#autosave, this.history, this.store, this.display] = [core, autosave, history, store, display];
     this.#weights = new Weights(core, history, store, (slot, weights) => display.setWeights(slot, weights));
     this.#weights.showFrame = (positions, maps) => display.showFrame(positions, maps);
+    new Advice(core, history, store, this.#weights);
     this.#weights.onWarning = (text) => this.toast("warning", text);
     history.subscribe(() => this.#publish());
   }

@@ -1,9 +1,10 @@
 /** All that the panels show. */
 
+import type { Soft } from "../model/handles.ts";
 import type { PointId, Session } from "../model/session.ts";
 import { EMPTY_SESSION } from "../model/session.ts";
 import { DEFAULT_VIEW, type View } from "../model/view.ts";
-import type { Files, Opened } from "../worker/protocol.ts";
+import type { Advice, Files, Opened } from "../worker/protocol.ts";
 
 export interface OpenShape {
   opened: Opened;
@@ -59,6 +60,10 @@ export interface State {
   comparisonFit: FitState;
   /** How far each control point ends from its target, in file units. */
   distances: ReadonlyMap<PointId, number>;
+  /** Why control points are left soft though more adherence is set, and which one is to blame. */
+  soft: (Soft & { id: PointId }) | null;
+  /** What is likely bad about the shape as it is, and the control points that it is about. */
+  advice: readonly (Advice & { ids: PointId[] })[];
   /** The GPU cannot hold the weights: the core computes the frames. */
   slowFrames: boolean;
   busy: Busy | null;
@@ -80,6 +85,8 @@ export const INITIAL_STATE: State = {
   fit: { status: "none" },
   comparisonFit: { status: "none" },
   distances: new Map(),
+  soft: null,
+  advice: [],
   slowFrames: false,
   busy: null,
   toasts: [],

@@ -2,10 +2,11 @@
 
 import type { History } from "../commands/index.ts";
 import { pointAt, type Vec3, distance, flatten } from "../model/vec3.ts";
-import { NO_TURN, scaledRotationOf } from "../model/turn.ts";
+import { turnsOf } from "../model/turn.ts";
 import type { PointId, Session } from "../model/session.ts";
 import { type Settings, weightsKey } from "../model/settings.ts";
-import type { Core, Fitted, Motion, Slot, WeightsSpec } from "../worker/protocol.ts";
+import type { Handles } from "../model/handles.ts";
+import type { Core, Fitted, Landed, Motion, Slot, WeightsSpec } from "../worker/protocol.ts";
 import type { FitState, State } from "./state.ts";
 import type { Store } from "./store.ts";
 
@@ -15,6 +16,10 @@ export interface BoundWeights {
   /** m x 3 */
   p: Float64Array<ArrayBuffer>;
   logits: Float32Array<ArrayBuffer>;
+  /** m x m: the logits at the control points' own places. */
+  ownLogits: Float32Array<ArrayBuffer>;
+  /** Where to aim so that they arrive. */
+  handles: Handles;
 }
 
 /** What is told of new weights; undefined: there are none any more. False: the GPU cannot take them. */
@@ -50,10 +55,9 @@ export class Weights {
   forget(): void {
     for (const slot of ["main", "comparison"] as const) {
       this.#keys[slot] = "";
-      delete this.#bound[slot];
-      this.#take(slot, undefined);
+      this.#unbind(slot);
     }
-    this.#store.set({ fit: { status: "none" }, comparisonFit: { status: "none" }, distances: new Map(), slowFrames: false });
+    this.#store.set({ fit: { status: "none" }, comparisonFit: { status: "none" }, distances: new Map(), soft: null, advice: [], slowFrames: false });
   }
 
   /** Fits where something has changed, and tells where the control points land. */
@@ -82,11 +86,8 @@ export class Weights {
     const byId = new Map(session.points.map((point) => [point.id, point]));
     const targets = bound.ids.map((id, i): Vec3 => byId.get(id)?.target ?? pointAt(bound.p, i));
     const turned = bound.ids.map((id) => byId.get(id)?.turn);
-    const { transform, temperature } = session.settings;
-    const turns = turned.some(Boolean) && {
-      turns: Float64Array.from(turned.flatMap((turn) => (turn ? scaledRotationOf(turn) : NO_TURN))),
-    };
-    return { targets: flatten(targets), ...turns, transform, temperature };
+    const { transform, temperature, adherence } = session.settings;
+    return { targets: flatten(targets), ...turnsOf(turned), transform, temperature, adherence };
   }
 
   /** Resolves when the weights belong to the session as it is. */
@@ -114,10 +115,16 @@ export class Weights {
 
   #drop(slot: Slot): void {
     this.#keys[slot] = "";
+    this.#unbind(slot);
+    this.#report(slot, { status: "none" });
+    if (slot === "main") this.#store.set({ distances: new Map(), soft: null, slowFrames: false });
+  }
+
+  #unbind(slot: Slot): void {
+    const bound = this.#bound[slot];
     delete this.#bound[slot];
     this.#take(slot, undefined);
-    this.#report(slot, { status: "none" });
-    if (slot === "main") this.#store.set({ distances: new Map(), slowFrames: false });
+    bound?.handles.free();
   }
 
   async #fit(slot: Slot, session: Session, weights: WeightsSpec, key: string): Promise<void> {
@@ -136,9 +143,14 @@ export class Weights {
         },
       });
       if (!current()) return;
-      const bound = { ids, p, logits: fitted.logits };
+      const handles = await this.#core.handles(p, fitted.ownLogits);
+      if (!current()) return handles.free();
+      const { logits, ownLogits } = fitted;
+      const bound = { ids, p, logits, ownLogits, handles };
+      const before = this.#bound[slot];
       this.#bound[slot] = bound;
       const fits = this.#take(slot, bound);
+      before?.handles.free();
       if (slot === "main") this.#store.set({ slowFrames: !fits });
       const milliseconds = performance.now() - start;
       this.#report(slot, { status: "ready", loss: fitted.loss, steps: fitted.steps, milliseconds });
@@ -175,17 +187,18 @@ export class Weights {
         const motion = this.motion(session);
         // While others are fitted the core answers for them; it is asked again when they are there.
         if (!bound || !motion || this.#store.value.fit.status !== "ready") return;
-        let landed: Float64Array;
+        let landed: Landed;
         if (this.#store.value.slowFrames) {
-          const { positions, maps, controlPoints } = await this.#core.deform(motion);
-          this.showFrame(positions, maps);
-          landed = controlPoints;
+          const frame = await this.#core.deform(motion);
+          this.showFrame(frame.positions, frame.maps);
+          landed = frame.landed;
         } else {
           landed = await this.#core.land(motion);
         }
         if (bound !== this.#bound.main) continue;
-        const away = bound.ids.map((id, i) => [id, distance(pointAt(landed, i), pointAt(motion.targets, i))] as const);
-        this.#store.set({ distances: new Map(away) });
+        const away = bound.ids.map((id, i) => [id, distance(pointAt(landed.places, i), pointAt(motion.targets, i))] as const);
+        const soft = landed.soft && { ...landed.soft, id: bound.ids[landed.soft.index] };
+        this.#store.set({ distances: new Map(away), soft });
       } while (this.#landAgain);
     } catch (error) {
       // A newer fit has ended the old one; it asks again when it is done.

@@ -8,7 +8,7 @@ import type { Command } from "./history.ts";
 import type { Box } from "./points.ts";
 
 /** Sets one of the settings. Successive ones of the same name, as a slider gives them, are one step. */
-export function set<K extends "kind" | "transform" | "temperature">(key: K, value: Settings[K]): Command {
+export function set<K extends "kind" | "transform" | "temperature" | "adherence">(key: K, value: Settings[K]): Command {
   return {
     label: LABELS[key],
     mergeKey: `set ${key}`,
@@ -16,7 +16,7 @@ export function set<K extends "kind" | "transform" | "temperature">(key: K, valu
   };
 }
 
-const LABELS = { kind: "Weights", transform: "Map", temperature: "Temperature" } as const;
+const LABELS = { kind: "Weights", transform: "Map", temperature: "Temperature", adherence: "Adherence" } as const;
 
 export function setNeural(change: Partial<NeuralParameters>): Command {
   return {

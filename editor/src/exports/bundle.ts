@@ -14,6 +14,8 @@ export interface Bundle {
   ids: readonly number[];
   p: number[];
   logits: string;
+  /** The logits at the control points' own places, and the core that takes them to their targets; null where handles are soft. */
+  exact: { ownLogits: string; core: string } | null;
   positions: string;
   normals: string;
   points: string;
@@ -35,7 +37,7 @@ interface PackedMaterial {
   texture: string | null;
 }
 
-type Numbers = Float32Array | Uint32Array;
+type Numbers = Float32Array | Uint32Array | Uint8Array;
 
 /** The bytes of numbers as text. Pieces that are divisible by three fit together. */
 export function encode(numbers: Numbers): string {
@@ -53,6 +55,16 @@ function decode(text: string): ArrayBuffer {
   for (let i = 0; i < binary.length; i++) bytes[i] = binary.charCodeAt(i);
   return bytes.buffer;
 }
+
+/** A program as text, compressed. */
+export async function pack(program: ArrayBuffer): Promise<string> {
+  return encode(new Uint8Array(await through(program, new CompressionStream("gzip"))));
+}
+
+export const unpack = (text: string): Promise<ArrayBuffer> => through(decode(text), new DecompressionStream("gzip"));
+
+const through = (bytes: ArrayBuffer, stream: CompressionStream | DecompressionStream): Promise<ArrayBuffer> =>
+  new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer();
 
 export const decodeFloats = (text: string): Float32Array<ArrayBuffer> => new Float32Array(decode(text));
 export const decodeIndices = (text: string): Uint32Array<ArrayBuffer> => new Uint32Array(decode(text));

@@ -3,16 +3,26 @@
 import type { Box } from "../commands/index.ts";
 import type { PointId, Session } from "../model/session.ts";
 import type { Drawn } from "../viewport/shapeView.ts";
-import { type Bundle, encode, packMaterial } from "./bundle.ts";
+import { type Bundle, encode, pack, packMaterial } from "./bundle.ts";
 
 /** The weights that are shown, and the control points that they are for. */
 interface Bound {
   ids: readonly PointId[];
   p: Float64Array;
   logits: Float32Array;
+  ownLogits: Float32Array;
 }
 
-export async function page(title: string, drawn: Drawn, box: Box, dim: 1 | 2 | 3, bound: Bound, session: Session): Promise<string> {
+/** `core`: the bytes of the core, which the page needs where control points are to arrive. */
+export async function page(
+  title: string,
+  drawn: Drawn,
+  box: Box,
+  dim: 1 | 2 | 3,
+  bound: Bound,
+  session: Session,
+  core: () => Promise<ArrayBuffer>,
+): Promise<string> {
   const response = await fetch("./offline.js");
   if (!response.ok) throw new Error("This copy of the editor has no offline.js, which the page to drag is made of.");
   const bundle: Bundle = {
@@ -23,6 +33,8 @@ export async function page(title: string, drawn: Drawn, box: Box, dim: 1 | 2 | 3
     ids: bound.ids,
     p: [...bound.p],
     logits: encode(finite(bound.logits)),
+    exact:
+      session.settings.adherence > 0 ? { ownLogits: encode(finite(bound.ownLogits)), core: await pack(await core()) } : null,
     positions: encode(drawn.rest.positions),
     normals: encode(drawn.rest.normals),
     points: encode(drawn.rest.points),
@@ -48,7 +60,7 @@ function html(title: string, data: string, program: string): string {
 <html lang="en">
 <head>
 <meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>${escaped(title)}</title>
 <style>${STYLE}</style>

@@ -26,6 +26,8 @@ export interface Settings {
   readonly classic: ClassicParameters;
   readonly transform: Transform;
   readonly temperature: number;
+  /** How far control points are taken from near their targets (0, the paper) towards them (1: they arrive). */
+  readonly adherence: number;
   /** The axis across which twins are mirrored; null: no mirroring. */
   readonly mirror: Axis | null;
 }
@@ -37,6 +39,7 @@ export const DEFAULT_SETTINGS: Settings = {
   classic: { alpha: 1, epsilon: 0 },
   transform: "rigid",
   temperature: 1,
+  adherence: 1,
   mirror: null,
 };
 
@@ -72,6 +75,7 @@ export function settingsFrom(found: unknown): Settings {
     },
     transform: take(source.transform, oneOf(...TRANSFORMS), rest.transform),
     temperature: take(source.temperature, within(1e-3, 1e3), rest.temperature),
+    adherence: take(source.adherence, within(0, 1), rest.adherence),
     mirror: take(source.mirror, oneOf<Axis | null>("x", "y", "z", null), rest.mirror),
   };
 }

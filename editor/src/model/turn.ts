@@ -62,6 +62,10 @@ export function rotationOf(turn: Turn): Rotation {
   ]; // prettier-ignore
 }
 
-/** What the core takes for a control point that is turned, and for one that is not. */
-export const scaledRotationOf = (turn: Turn): number[] => rotationOf(turn).map((e) => e * turn.scale);
-export const NO_TURN: readonly number[] = new Array<number>(9).fill(Number.NaN);
+const NO_TURN: readonly number[] = new Array<number>(9).fill(Number.NaN);
+
+/** What the core takes: of each control point its rotation times its scale, NaN for one that is not turned; nothing where none is. */
+export function turnsOf(turned: readonly (Turn | undefined)[]): { turns?: Float64Array } {
+  if (!turned.some(Boolean)) return {};
+  return { turns: Float64Array.from(turned.flatMap((turn) => (turn ? rotationOf(turn).map((e) => e * turn.scale) : NO_TURN))) };
+}

@@ -1,9 +1,11 @@
 /** The program of a page that is dragged offline (exports/page.ts): the view and the history of the editor, without its panels. */
 
 import { History, resetTargets, set } from "../commands/index.ts";
-import { type Bundle, decodeFloats, decodeIndices, unpackMaterial } from "../exports/bundle.ts";
+import { type Bundle, decodeFloats, decodeIndices, unpack, unpackMaterial } from "../exports/bundle.ts";
+import type { Handles } from "../model/handles.ts";
 import { DEFAULT_VIEW } from "../model/view.ts";
 import { Viewport } from "../viewport/viewport.ts";
+import { createHandles } from "../worker/handles.ts";
 
 const COLDEST = 0.05;
 const HOTTEST = 10;
@@ -31,7 +33,17 @@ viewport.setShape(
   bundle.dim,
   undefined,
 );
-viewport.setWeights("main", { ids: bundle.ids, p: Float64Array.from(bundle.p), logits: decodeFloats(bundle.logits) });
+
+const p = Float64Array.from(bundle.p);
+const ownLogits = decodeFloats(bundle.exact?.ownLogits ?? "");
+void handles().then((handles) => {
+  viewport.setWeights("main", { ids: bundle.ids, p, logits: decodeFloats(bundle.logits), ownLogits, handles });
+});
+
+async function handles(): Promise<Handles> {
+  if (!bundle.exact) return { aim: (targets) => targets, free: () => undefined };
+  return createHandles(await WebAssembly.compile(await unpack(bundle.exact.core)), p, bundle.dim, ownLogits);
+}
 
 const temperature = element<HTMLInputElement>("temperature");
 const show = (): void => {

@@ -1,6 +1,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import type { App } from "../app/app.ts";
 import { ACCEPTED } from "../app/files.ts";
+import { AdvicePanel } from "./AdvicePanel.tsx";
 import { LookBar } from "./LookBar.tsx";
 import { BusyNote, Empty, Help, SideLabels, Toasts } from "./Overlays.tsx";
 import { PointsPanel } from "./PointsPanel.tsx";
@@ -56,6 +57,7 @@ function Page({ host }: { host: HTMLElement }) {
           <aside class="panel" aria-label="Settings">
             <PointsPanel />
             <WeightsPanel />
+            <AdvicePanel />
           </aside>
         )}
       </main>

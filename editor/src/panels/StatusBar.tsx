@@ -1,14 +1,19 @@
 import type { FitState } from "../app/state.ts";
 import { isMoved } from "../model/session.ts";
-import { distance } from "./controls.tsx";
+import { arrived, distance } from "./controls.tsx";
 import { useAppState } from "./useStore.ts";
+
+// Made once: that takes a hundred times as long as to use it.
+const CLOCK = new Intl.DateTimeFormat([], { hour: "2-digit", minute: "2-digit" });
 
 /** How things stand, quietly. */
 export function StatusBar() {
-  const { fit, comparisonFit, session, shape, distances, view, autosaved, slowFrames } = useAppState();
+  const { fit, comparisonFit, session, shape, distances, soft, advice, view, autosaved, slowFrames } = useAppState();
   if (!shape) return null;
   const moved = session.points.filter(isMoved);
   const away = moved.map((point) => distances.get(point.id)).filter((d) => d !== undefined);
+  const size = 2 * shape.opened.frame.half;
+  const farthest = Math.max(0, ...away);
   return (
     <footer class="status-bar">
       <span class={`fit ${fit.status}`} role="status">
@@ -17,17 +22,21 @@ export function StatusBar() {
       </span>
       {away.length > 0 && (
         <span title="The largest distance of a control point from its target">
-          off target by at most {distance(Math.max(...away), 2 * shape.opened.frame.half)} ({percent(Math.max(...away) / (2 * shape.opened.frame.half))})
+          {arrived(farthest, size) ? "on target" : `off target by at most ${distance(farthest, size)} (${percent(farthest / size)})`}
+          {soft ? ", left soft" : ""}
         </span>
       )}
+      {advice.length > 0 && <span>worth a look: {advice.map(({ kind }) => WORDS[kind]).join(", ")}</span>}
       {slowFrames && <span>too many weights for the graphics card: frames are computed by the core</span>}
       <span class="spacer" />
       {view.moves === "position" && <span class="mode">moving places at rest</span>}
       {view.before && <span class="mode">before</span>}
-      {autosaved && <span title="In this browser; nothing is uploaded">kept {autosaved.toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" })}</span>}
+      {autosaved && <span title="In this browser; nothing is uploaded">kept {CLOCK.format(autosaved)}</span>}
     </footer>
   );
 }
+
+const WORDS = { folds: "folds", torn: "tears", ungoverned: "a part without a control point" } as const;
 
 function textOf(fit: FitState): string {
   switch (fit.status) {

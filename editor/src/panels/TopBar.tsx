@@ -5,6 +5,8 @@ import { useApp, useAppState } from "./useStore.ts";
 
 const NEXT_THEME: Record<Theme, Theme> = { system: "dark", dark: "light", light: "system" };
 
+const WHOLE = new Intl.NumberFormat("en");
+
 export function TopBar() {
   const app = useApp();
   const { shape, samples, undoLabel, redoLabel, theme, view, busy } = useAppState();
@@ -56,8 +58,8 @@ export function TopBar() {
           <>
             <strong>{shape.opened.name}</strong>
             <span>
-              {shape.opened.count.toLocaleString("en")} points
-              {shape.opened.triangles ? ` · ${(shape.opened.triangles.length / 3).toLocaleString("en")} triangles` : ""}
+              {WHOLE.format(shape.opened.count)} points
+              {shape.opened.triangles ? ` · ${WHOLE.format(shape.opened.triangles.length / 3)} triangles` : ""}
             </span>
           </>
         )}

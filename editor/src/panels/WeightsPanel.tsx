@@ -1,6 +1,7 @@
 import { set, setClassic, setNeural } from "../commands/index.ts";
+import type { Soft } from "../model/handles.ts";
 import type { Transform, WeightsKind } from "../model/settings.ts";
-import { NumberField, Section, Segmented, Slider } from "./controls.tsx";
+import { distance, NumberField, Section, Segmented, short, Slider, Switch } from "./controls.tsx";
 import { useApp, useAppState } from "./useStore.ts";
 
 const KINDS: readonly { value: WeightsKind; label: string; title: string }[] = [
@@ -49,6 +50,45 @@ export function WeightsPanel() {
         </div>
       )}
       <Segmented label="Local map" value={settings.transform} options={MAPS} onChange={(map) => app.do(set("transform", map))} />
+      <ExactHandles />
     </Section>
   );
+}
+
+/** Whether control points go near their targets, as in the paper, or all the way. */
+function ExactHandles() {
+  const app = useApp();
+  const { session, soft, shape } = useAppState();
+  const { adherence } = session.settings;
+  const take = (value: number) => app.do(set("adherence", value));
+  return (
+    <>
+      <Switch
+        label="Exact handles"
+        title="On: control points arrive at their targets; off: they go near them, as in the paper"
+        on={adherence > 0}
+        onChange={(on) => {
+          take(on ? 1 : 0);
+          app.history.seal();
+        }}
+      />
+      {adherence > 0 && (
+        <Slider label="Adherence" title="1: control points arrive; 0: they go near their targets, as in the paper" value={adherence} min={0} max={1} closed onInput={take} onDone={() => app.history.seal()} />
+      )}
+      {soft && shape && (
+        <p class="hint" role="status">
+          {whySoft(soft, session.points.find(({ id }) => id === soft.id)?.name ?? "one", 2 * shape.opened.frame.half)}
+        </p>
+      )}
+    </>
+  );
+}
+
+function whySoft({ reason, amount, remedy }: Soft, name: string, size: number): string {
+  const why =
+    reason === "shared"
+      ? `${name} has only ${amount.toPrecision(2)} of the weight at its own place`
+      : `${name} would stay ${distance(amount, size)} off its target`;
+  const help = remedy === null ? "" : remedy === "affine" ? " The affine map takes them there." : ` At temperature ${short(remedy)} they arrive.`;
+  return `Left soft: ${why}.${help}`;
 }

@@ -70,13 +70,15 @@ interface SliderProps {
   max: number;
   /** Equal ways are equal factors. `min` > 0. */
   logarithmic?: boolean;
+  /** Nothing beyond `max` can be typed either. */
+  closed?: boolean;
   onInput: (value: number) => void;
   onDone: () => void;
 }
 
 const STEPS = 400;
 
-export function Slider({ label, title, value, min, max, logarithmic, onInput, onDone }: SliderProps) {
+export function Slider({ label, title, value, min, max, logarithmic, closed, onInput, onDone }: SliderProps) {
   const id = useId();
   const toPlace = (v: number): number =>
     STEPS * (logarithmic ? Math.log(v / min) / Math.log(max / min) : (v - min) / (max - min));
@@ -95,12 +97,29 @@ export function Slider({ label, title, value, min, max, logarithmic, onInput, on
         onInput={(event) => onInput(round(fromPlace(Number(event.currentTarget.value))))}
         onChange={onDone}
       />
-      <NumberField label={label} value={value} min={logarithmic ? Number.MIN_VALUE : min} onChange={(v) => { onInput(v); onDone(); }} />
+      <NumberField label={label} value={value} min={logarithmic ? Number.MIN_VALUE : min} max={closed ? max : Infinity} onChange={(v) => { onInput(v); onDone(); }} />
     </div>
   );
 }
 
 const round = (value: number): number => Number(value.toPrecision(3));
+
+interface SwitchProps {
+  label: string;
+  title?: string;
+  on: boolean;
+  onChange: (on: boolean) => void;
+}
+
+/** On or off, at once. */
+export function Switch({ label, title, on, onChange }: SwitchProps) {
+  return (
+    <label class="switch" title={title}>
+      <span>{label}</span>
+      <input type="checkbox" role="switch" checked={on} onChange={(event) => onChange(event.currentTarget.checked)} />
+    </label>
+  );
+}
 
 interface NumberFieldProps {
   label: string;
@@ -152,8 +171,11 @@ export function NumberField({ label, value, min, max, whole, disabled, prefix, s
 /** A number as one reads it: six digits are enough. */
 export const short = (value: number): string => String(Number(value.toPrecision(6)));
 
+/** Whether nobody can see a distance on a shape of that size. */
+export const arrived = (away: number, size: number): boolean => away < 1e-7 * size;
+
 /** A distance with two digits; what cannot be seen on a shape of that size is none. */
-export const distance = (away: number, size: number): string => (away < 1e-7 * size ? "0" : short(Number(away.toPrecision(2))));
+export const distance = (away: number, size: number): string => (arrived(away, size) ? "0" : short(Number(away.toPrecision(2))));
 
 interface MenuProps {
   label: string;

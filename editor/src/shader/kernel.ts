@@ -41,8 +41,8 @@ const ROWS = 6;
 /** Larger than any logit that means anything, and safe to compute with, unlike infinity. */
 const LARGEST_LOGIT = 1e30;
 
-/** The texture units of the two samplers. */
-const UNITS = { logits: 0, controlPoints: 1 };
+/** The texture units of the two samplers: the last that every vertex shader has, beyond those that materials come to. */
+const UNITS = { logits: 14, controlPoints: 15 };
 
 /** Who keeps account of a context that is shared; contexts are such themselves. */
 export type GlState = {

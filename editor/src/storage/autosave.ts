@@ -1,6 +1,7 @@
 /** The work is kept in the browser (IndexedDB), so that a closed tab or a crash loses nothing. */
 
 import type { Session } from "../model/session.ts";
+import { settingsFrom } from "../model/settings.ts";
 import type { View } from "../model/view.ts";
 
 const DATABASE = "neuralmls-editor";
@@ -49,7 +50,10 @@ export class Autosave {
     const store = (await this.#open).transaction(STORE).objectStore(STORE);
     const [shape, head] = await Promise.all([result(store.get("shape")), result(store.get("head"))]);
     if (!shape || !head) return undefined;
-    return { ...(shape as Pick<Work, "name" | "files">), ...(head as Head) };
+    const { session, view, when } = head as Head;
+    // An older editor may not have known all settings.
+    const settings = settingsFrom(session.settings);
+    return { ...(shape as Pick<Work, "name" | "files">), session: { ...session, settings }, view, when };
   }
 
   async clear(): Promise<void> {

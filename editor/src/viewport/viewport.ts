@@ -3,9 +3,11 @@
 import { Box3, Matrix3, type Quaternion, type Ray, Sphere, Vector2, Vector3 } from "three";
 import type { SerializedBVH } from "three-mesh-bvh";
 import { addPoint, type Box, type History, moveSelected, select, turnSelected } from "../commands/index.ts";
+import type { Handles } from "../model/handles.ts";
 import { twinOf } from "../model/mirror.ts";
 import { leader, type PointId, selected, type Session } from "../model/session.ts";
 import type { Slot } from "../model/slot.ts";
+import { turnsOf } from "../model/turn.ts";
 import type { Vec3 } from "../model/vec3.ts";
 import type { Tool, View } from "../model/view.ts";
 import { type GlState, type GpuMotion, Kernel, type RestVertices } from "../shader/kernel.ts";
@@ -25,6 +27,9 @@ export interface Bound {
   p: Float64Array;
   /** n x m */
   logits: Float32Array;
+  /** m x m */
+  ownLogits: Float32Array;
+  handles: Handles;
 }
 
 /** Vertices as the core has computed them. */
@@ -284,12 +289,11 @@ export class Viewport {
   }
 
   /** Weights that are still being fitted: what was bound last moves as far as its control points are still there. */
-  #motion({ ids, p }: Bound, session: Session): GpuMotion {
+  #motion({ ids, p, handles }: Bound, session: Session): GpuMotion {
     const { transform, temperature } = session.settings;
     const { centre, half } = this.#box;
     const enter = (coordinate: number, at: number): number => (coordinate - centre[at % 3]) / half;
-    const places = p.map(enter);
-    const targets = places.slice();
+    const targets = p.slice();
     if (!this.#atRest) {
       const byId = new Map(session.points.map((point) => [point.id, point]));
       ids.forEach((id, i) => {
@@ -298,8 +302,7 @@ export class Viewport {
         for (let c = 0; c < 3; c++) {
           // Bit for bit where it is not moved.
           const moved = point.target[c] !== point.position[c];
-          const by = point.target[c] - point.position[c];
-          if (moved) targets[3 * i + c] = enter(p[3 * i + c] + by, c);
+          if (moved) targets[3 * i + c] += point.target[c] - point.position[c];
         }
       });
     }
@@ -311,8 +314,11 @@ export class Viewport {
           ? ({ by: "weight", of: at } as const)
           : ({ by: "nothing" } as const);
     const turns = new Map(session.points.map((point) => [point.id, this.#atRest ? undefined : point.turn]));
-    const turned = turnedPoints(places, ids.map((id) => turns.get(id)));
-    return { p: places, q: targets, turned, transform, temperature, tint };
+    const turn = ids.map((id) => turns.get(id));
+    const aimed = handles.aim(targets, { ...session.settings, ...turnsOf(turn) });
+    const places = p.map(enter);
+    const turned = turnedPoints(places, turn);
+    return { p: places, q: aimed.map(enter), turned, transform, temperature, tint };
   }
 
   #markersOf(session: Session): Marker[] {

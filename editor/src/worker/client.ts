@@ -5,19 +5,33 @@
 
 import coreUrl from "../wasm/neuralmls_wasm_bg.wasm?url";
 import { widen, widenMaps } from "./coordinates.ts";
+import { createHandles } from "./handles.ts";
 import type { Moved } from "./messages.ts";
 import { type CallOptions, type Core, CoreError, type Files, type Fitted, type Motion, type Slot } from "./protocol.ts";
 import { Remote } from "./remote.ts";
+
+/** Places that are looked at for advice: as many as the command line's. */
+const PLACES = 4000;
 
 /** Starts loading the core; the first call waits for it. */
 export function createCore(): Core {
   return new Client(compiled());
 }
 
+/** The core as it came, for pages that are dragged offline. */
+export async function coreBytes(): Promise<ArrayBuffer> {
+  return (await fetched()).arrayBuffer();
+}
+
+async function fetched(): Promise<Response> {
+  const response = await fetch(coreUrl);
+  if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+  return response;
+}
+
 async function compiled(): Promise<WebAssembly.Module> {
   try {
-    const response = await fetch(coreUrl);
-    if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+    const response = await fetched();
     // Not every static host sends the type that compiling while loading demands.
     const streams = response.headers.get("content-type") === "application/wasm";
     return await (streams ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer()));
@@ -35,6 +49,8 @@ interface Open {
   x: Float64Array;
   dim: number;
   hasNormals: boolean;
+  /** Where advice is looked for. */
+  places: Promise<Float64Array> | null;
 }
 
 /** A worker that has the points, and its newest fit. */
@@ -61,7 +77,7 @@ class Client implements Core {
     const { remote, give } = await this.#read(files, name, options);
     const { opened, x } = give;
     this.close();
-    this.#shape = { remote, files, name, x, dim: opened.dim, hasNormals: opened.hasNormals };
+    this.#shape = { remote, files, name, x, dim: opened.dim, hasNormals: opened.hasNormals, places: null };
     this.#start("main");
     return opened;
   }
@@ -84,16 +100,26 @@ class Client implements Core {
   }
 
   async deform(motion: Motion, options: CallOptions & { slot?: Slot } = {}) {
-    const [{ positions, maps }, controlPoints] = await Promise.all([
+    const [{ positions, maps }, landed] = await Promise.all([
       this.#moved(motion, true, options),
       this.land(motion, options),
     ]);
     const { dim } = this.#present();
-    return { positions: widen(positions, dim), maps: widenMaps(maps!, dim), controlPoints };
+    return { positions: widen(positions, dim), maps: widenMaps(maps!, dim), landed };
   }
 
   async land(motion: Motion, options: CallOptions & { slot?: Slot } = {}) {
     return (await this.#fitted(options.slot)).call("land", { motion }, options);
+  }
+
+  async advise(motion: Motion, options: CallOptions = {}) {
+    const shape = this.#present();
+    shape.places ??= this.#reader().then((reader) => reader.call("sample", { count: PLACES }));
+    return (await this.#fitted()).call("advise", { motion, places: await shape.places }, options);
+  }
+
+  async handles(controlPoints: Float64Array, ownLogits: Float32Array) {
+    return createHandles(await this.#core, controlPoints, this.#present().dim, ownLogits);
   }
 
   async save(name: string, motion: Motion | null, options: CallOptions = {}) {

@@ -1,6 +1,6 @@
 /** The messages between `remote.ts` and `worker.ts`: what a worker can be asked, and what it gives. */
 
-import type { Fitted, Motion, Opened, Saved, Stage, WeightsSpec } from "./protocol.ts";
+import type { Advice, Fitted, Landed, Motion, Opened, Saved, Stage, WeightsSpec } from "./protocol.ts";
 
 /** Questions and answers by name. A worker holds at most one shape, one set of points and one fit. */
 export interface Operations {
@@ -10,7 +10,10 @@ export interface Operations {
   load: { ask: { x: Float64Array; dim: number }; give: null };
   fit: { ask: { controlPoints: Float64Array; weights: WeightsSpec }; give: Fitted };
   deform: { ask: { motion: Motion; maps: boolean }; give: Moved };
-  land: { ask: { motion: Motion }; give: Float64Array<ArrayBuffer> };
+  land: { ask: { motion: Motion }; give: Landed };
+  /** Places all over the shape, for `advise` (k x dim). */
+  sample: { ask: { count: number }; give: Float64Array<ArrayBuffer> };
+  advise: { ask: { motion: Motion; places: Float64Array }; give: Advice[] };
   /** The shape's file with other positions; null: as it was read. */
   write: { ask: { name: string; moved: Moved | null }; give: Saved };
   farthestPoints: { ask: { count: number; seed: number }; give: Float64Array<ArrayBuffer> };

@@ -5,11 +5,12 @@
  * the shape's box. Symbols as in ARCHITECTURE.md: x points, p control points, q targets, n points, m control points.
  */
 
+import type { Handles, Soft } from "../model/handles.ts";
 import type { Transform } from "../model/settings.ts";
 import type { Slot } from "../model/slot.ts";
 import type { Vec3 } from "../model/vec3.ts";
 
-export type { Slot, Transform, Vec3 };
+export type { Handles, Slot, Soft, Transform, Vec3 };
 
 /** Files that belong together, by name: a shape, its materials, textures and buffers. */
 export type Files = ReadonlyMap<string, Uint8Array>;
@@ -96,6 +97,16 @@ export interface Motion {
   turns?: Float64Array;
   transform: Transform;
   temperature: number;
+  /** From 0, near the targets, to 1, onto them; control points that this would harm are left soft. */
+  adherence: number;
+}
+
+/** Where the control points land. */
+export interface Landed {
+  /** m x 3 in file units */
+  places: Float64Array<ArrayBuffer>;
+  /** Why they are left soft, if the adherence is above 0 and they are. */
+  soft: Soft | null;
 }
 
 /** The core's result, for checks, statistics and where the GPU has no float textures. */
@@ -104,8 +115,19 @@ export interface Deformed {
   positions: Float64Array<ArrayBuffer>;
   /** The local maps M, row-major, n x 9. */
   maps: Float64Array<ArrayBuffer>;
-  /** Where the control points themselves land, m x 3. */
-  controlPoints: Float64Array<ArrayBuffer>;
+  landed: Landed;
+}
+
+/** One thing that is likely bad about a deformation (crates/core/src/advice.rs). */
+export interface Advice {
+  kind: "folds" | "torn" | "ungoverned";
+  /** The part of the shape that is folded; the greatest stretch; how many spacings of the control points away. */
+  amount: number;
+  /** The control points next to the worst place, by their numbers. */
+  near: number[];
+  /** What at least halves it, tried: another temperature, or soft handles; and the part of the shape that is left. */
+  better: number | "soft" | null;
+  left: number;
 }
 
 /** Files to be given to the person: the shape first, then its changed side files (buffers of a .gltf). */
@@ -137,8 +159,12 @@ export interface Core {
   fit(controlPoints: Float64Array, weights: WeightsSpec, options?: CallOptions & { slot?: Slot }): Promise<Fitted>;
   /** Deforms by the last fit of the slot; waits for one that is on its way. */
   deform(motion: Motion, options?: CallOptions & { slot?: Slot }): Promise<Deformed>;
-  /** Where the control points land, m x 3 in file units: cheap, for each one's distance to its target. */
-  land(motion: Motion, options?: CallOptions & { slot?: Slot }): Promise<Float64Array<ArrayBuffer>>;
+  /** Where the control points land: cheap, for each one's distance to its target. */
+  land(motion: Motion, options?: CallOptions & { slot?: Slot }): Promise<Landed>;
+  /** What is likely bad about a deformation; nothing where all is well. */
+  advise(motion: Motion, options?: CallOptions): Promise<Advice[]>;
+  /** Exact handles for this thread; `controlPoints` (m x 3) and `ownLogits` (m x m) of a fit to the open shape. */
+  handles(controlPoints: Float64Array, ownLogits: Float32Array): Promise<Handles>;
   /**
    * The open shape's file with the core's double-precision result; `motion` null: as it was read, byte for byte. `name` is the new
    * file's name; changed side files are called after it.

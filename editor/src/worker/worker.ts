@@ -3,7 +3,7 @@
 import initialise, { type Fit, Points, ShapeFile } from "../wasm/neuralmls_wasm.js";
 import { measure, narrow, narrowMaps, relative, widen } from "./coordinates.ts";
 import type { Answer, Ask, Give, Moved, Operation, Question } from "./messages.ts";
-import { CoreError, type Fitted, type Motion, type Opened, type Saved, type Stage } from "./protocol.ts";
+import { CoreError, type Fitted, type Motion, type Opened, type Saved, type Soft, type Stage } from "./protocol.ts";
 
 /** A control point with less of the weight at its own place shares it; the training aims at 0.9. */
 const OWNED = 0.85;
@@ -46,36 +46,45 @@ const operations: { [O in Operation]: (ask: Ask<O>, tell: Tell) => Give<O> } = {
       spec.kind === "neural"
         ? core.train(p, spec.width, BigInt(spec.seed), spec.steps ?? undefined, tell("train"))
         : core.classic(p, spec.alpha, spec.epsilon);
-    try {
-      const trained = performance.now();
-      fitted = core.evaluate(weights, tell("evaluate"));
-      const evaluated = performance.now();
-      const ownLogits = fitted.own_logits() as Float32Array<ArrayBuffer>;
-      const untilSmall = spec.kind === "neural" && spec.steps === null;
-      return {
-        controlPoints: p.length / dim,
-        logits: fitted.logits() as Float32Array<ArrayBuffer>,
-        ownLogits,
-        loss: weights.loss() ?? null,
-        steps: weights.steps(),
-        milliseconds: { train: spec.kind === "neural" ? trained - began : 0, evaluate: evaluated - trained },
-        shared: untilSmall ? sharing(ownLogits, p.length / dim) : [],
-      } satisfies Fitted;
-    } finally {
-      weights.free();
-    }
+    const [loss, steps] = [weights.loss() ?? null, weights.steps()];
+    const trained = performance.now();
+    fitted = core.evaluate(weights, tell("evaluate")); // which takes them
+    const evaluated = performance.now();
+    const ownLogits = fitted.own_logits() as Float32Array<ArrayBuffer>;
+    const untilSmall = spec.kind === "neural" && spec.steps === null;
+    return {
+      controlPoints: p.length / dim,
+      logits: fitted.logits() as Float32Array<ArrayBuffer>,
+      ownLogits,
+      loss,
+      steps,
+      milliseconds: { train: spec.kind === "neural" ? trained - began : 0, evaluate: evaluated - trained },
+      shared: untilSmall ? sharing(ownLogits, p.length / dim) : [],
+    } satisfies Fitted;
   },
 
   deform({ motion, maps }, tell) {
-    const { targets, turns, transform, temperature } = inDimension(motion);
-    const [positions, turned] = present(fitted).deform(targets, turns, transform, temperature, maps, tell("deform"));
+    const { targets, turns, transform, temperature, adherence } = inDimension(motion);
+    const aimed = present(fitted).aim(targets, turns, transform, temperature, adherence);
+    const [positions, turned] = present(fitted).deform(aimed, turns, transform, temperature, maps, tell("deform"));
     return { positions, maps: turned ?? null } as Moved;
   },
 
   land({ motion }) {
-    const { targets, turns, transform, temperature } = inDimension(motion);
-    const landed = present(fitted).land(targets, turns, transform, temperature) as Float64Array<ArrayBuffer>;
-    return widen(landed, present(points).dim);
+    const { targets, turns, transform, temperature, adherence } = inDimension(motion);
+    const [places, reason, index, amount, remedy] = present(fitted).land(targets, turns, transform, temperature, adherence);
+    const soft: Soft | null = reason === undefined ? null : { reason, index, amount, remedy };
+    return { places: widen(places, present(points).dim), soft };
+  },
+
+  sample({ count }) {
+    return present(file).sample(count) as Float64Array<ArrayBuffer>;
+  },
+
+  advise({ motion, places }) {
+    const { targets, turns, transform, temperature, adherence } = inDimension(motion);
+    const found = present(fitted).advise(places, targets, turns, transform, temperature, adherence);
+    return found.map(([kind, amount, , first, second, better, left]) => ({ kind, amount, near: [first, second], better, left }));
   },
 
   write({ name, moved }, tell) {

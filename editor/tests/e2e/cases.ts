@@ -9,6 +9,7 @@ import { data, pages, samples } from "./tools.ts";
 export interface Compared {
   transform: string;
   temperature: number;
+  adherence: number;
   /** The largest distance of the two, and the largest from the shape at rest, as fractions of the box. */
   worst: number;
   moved: number;
@@ -23,7 +24,7 @@ declare global {
 }
 
 const motions = ["rigid", "similarity", "affine"].flatMap((transform) =>
-  [0.3, 1, 3].map((temperature) => ({ transform, temperature })),
+  [0.3, 1, 3].flatMap((temperature) => [0, 1].map((adherence) => ({ transform, temperature, adherence }))),
 );
 
 export interface Case {
@@ -62,7 +63,7 @@ export function published(): Case | null {
   return { name: "ShapeNetChair1", file, p, q };
 }
 
-/** By every map at each of three temperatures, with the weights of one fit. */
+/** By every map at each of three temperatures, soft and exact, with the weights of one fit. */
 export async function compare(page: Page, { file, p, q }: Case, weights: object, turned: (Turn | undefined)[] = []): Promise<Compared[]> {
   await page.goto(`${pages}/shader.html`);
   await page.waitForFunction(() => window.compare);

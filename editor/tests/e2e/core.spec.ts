@@ -36,30 +36,30 @@ async function open(page: Page, name: string, bytes: Buffer) {
 }
 
 /** Fits, and saves with the targets moved; gives the file's text. */
-async function bend(page: Page, weights: WeightsSpec, transform: "rigid" | "similarity" | "affine", temperature: number) {
+async function bend(page: Page, weights: WeightsSpec, transform: "rigid" | "similarity" | "affine", temperature: number, adherence: number) {
   return page.evaluate(
-    async ([p, q, weights, transform, temperature]) => {
+    async ([p, q, weights, transform, temperature, adherence]) => {
       const fitted = await window.core.fit(Float64Array.from(p.flat()), weights);
       const targets = Float64Array.from(q.flat());
-      const saved = await window.core.save("bent.obj", { targets, transform, temperature });
+      const saved = await window.core.save("bent.obj", { targets, transform, temperature, adherence });
       const { loss, steps, milliseconds, shared } = fitted;
       return { text: new TextDecoder().decode(saved.files[0]!.bytes), loss, steps, milliseconds, shared };
     },
-    [points.map((p) => p.position), moved, weights, transform, temperature] as const,
+    [points.map((p) => p.position), moved, weights, transform, temperature, adherence] as const,
   );
 }
 
-const cases: [string, WeightsSpec, "rigid" | "similarity" | "affine", number, string[]][] = [
-  ["neural, rigid", { kind: "neural", width: 1024, seed: 0, steps: null }, "rigid", 1, []],
-  ["another seed and width, affine", { kind: "neural", width: 256, seed: 7, steps: null }, "affine", 1, ["--width", "256", "--seed", "7"]],
-  ["48 steps, similarity", { kind: "neural", width: 1024, seed: 0, steps: 48 }, "similarity", 2, ["--steps", "48"]],
-  ["classic", { kind: "classic", alpha: 2, epsilon: 0.01 }, "rigid", 1, ["--weights", "inverse-distance", "--alpha", "2", "--epsilon", "0.01"]],
+const cases: [string, WeightsSpec, "rigid" | "similarity" | "affine", number, number, string[]][] = [
+  ["neural, rigid", { kind: "neural", width: 1024, seed: 0, steps: null }, "rigid", 1, 1, []],
+  ["another seed and width, affine", { kind: "neural", width: 256, seed: 7, steps: null }, "affine", 1, 1, ["--width", "256", "--seed", "7"]],
+  ["48 steps, similarity", { kind: "neural", width: 1024, seed: 0, steps: 48 }, "similarity", 2, 0, ["--steps", "48", "--no-exact"]],
+  ["classic", { kind: "classic", alpha: 2, epsilon: 0.01 }, "rigid", 1, 1, ["--weights", "inverse-distance", "--alpha", "2", "--epsilon", "0.01"]],
 ];
 
-for (const [name, weights, transform, temperature, options] of cases) {
+for (const [name, weights, transform, temperature, adherence, options] of cases) {
   test(`saves what the command line saves: ${name}`, async ({ page }, info) => {
     await open(page, "chair.obj", chair);
-    const { text } = await bend(page, weights, transform, temperature);
+    const { text } = await bend(page, weights, transform, temperature, adherence);
     const file = {
       format: "neuralmls-control-points",
       version: 1,
@@ -104,7 +104,7 @@ test("a glTF is saved with its buffer, which is called after it", async ({ page 
       ]);
       const { namedFiles, warnings } = await window.core.open(files, "shape.gltf");
       await window.core.fit(Float64Array.from([0, 0, 0]), { kind: "classic", alpha: 1, epsilon: 0 });
-      const motion = { targets: Float64Array.from([0, 0.5, 0]), transform: "rigid", temperature: 1 } as const;
+      const motion = { targets: Float64Array.from([0, 0.5, 0]), transform: "rigid", temperature: 1, adherence: 0 } as const;
       const saved = await window.core.save("bent.gltf", motion);
       const missing = await window.core.open(new Map([["shape.gltf", files.get("shape.gltf")!]]), "shape.gltf").catch((error) => error.message);
       return { namedFiles, warnings, missing, files: saved.files.map(({ name, bytes }) => ({ name, bytes: [...bytes] })) };
@@ -133,7 +133,7 @@ test("a refused file is one sentence, and leaves the open shape as it is", async
   ] as const) {
     await expect(open(page, name, Buffer.from(text)), name).rejects.toThrow(new RegExp(`CoreError: ${name}: .*${words === name ? "" : words}`));
   }
-  const { text } = await bend(page, { kind: "classic", alpha: 1, epsilon: 0 }, "rigid", 1);
+  const { text } = await bend(page, { kind: "classic", alpha: 1, epsilon: 0 }, "rigid", 1, 1);
   expect(vertices(text).length).toBe(vertices(chair.toString()).length);
 });
 
@@ -166,15 +166,16 @@ test("a newer fit takes the place of an older one, and an aborted one ends at on
 
 test("the control points land where the core says, and places are found for new ones", async ({ page }) => {
   await open(page, "chair.obj", chair);
-  const { landed, deformed, places, again } = await page.evaluate(
+  const { landed, deformed, exact, places, again } = await page.evaluate(
     async ([p, q]) => {
       const { core } = window;
       await core.fit(Float64Array.from(p!.flat()), { kind: "neural", width: 1024, seed: 0, steps: null });
-      const motion = { targets: Float64Array.from(q!.flat()), transform: "rigid", temperature: 1 } as const;
+      const motion = { targets: Float64Array.from(q!.flat()), transform: "rigid", temperature: 1, adherence: 0 } as const;
       const deformed = await core.deform(motion);
       return {
-        landed: [...(await core.land(motion))],
-        deformed: [...deformed.controlPoints],
+        landed: [...(await core.land(motion)).places],
+        deformed: [...deformed.landed.places],
+        exact: [...(await core.land({ ...motion, adherence: 1 })).places],
         places: [...(await core.farthestPoints(12))],
         again: [...(await core.farthestPoints(12))],
       };
@@ -183,6 +184,8 @@ test("the control points land where the core says, and places are found for new 
   );
   expect(landed).toEqual(deformed);
   expect(difference(landed, moved.flat())).toBeLessThan(0.05);
+  expect(difference(landed, moved.flat())).toBeGreaterThan(1e-4);
+  expect(difference(exact, moved.flat())).toBeLessThan(1e-9);
   expect(places).toHaveLength(36);
   expect(again).toEqual(places);
 });

@@ -63,7 +63,7 @@ test("drop, click, drag, undo, redo, mirror, temperature, save: the file is that
   const points = await save(editor, /^Control points/);
   writeFileSync(info.outputPath("session.json"), points.bytes);
   const bent = info.outputPath("bent.obj");
-  command("deform", join(samples, "chair.obj"), "--points", info.outputPath("session.json"), "-o", bent, "--temperature", "0.6", "-q");
+  command("deform", join(samples, "chair.obj"), "--points", info.outputPath("session.json"), "-o", bent, "-q");
   const expected = readFileSync(bent, "utf8");
   const right = vertices(expected);
   expect(difference(right, vertices(chair))).toBeGreaterThan(0.01);
@@ -88,6 +88,59 @@ test("a mirrored move moves the twin too", async ({ editor }) => {
   await field.press("Enter");
   const after = await session(editor);
   expect(of(after.points, b).target[0]).toBeCloseTo(of(before.points, b).target[0] - 0.05, 6);
+});
+
+test("the gizmo turns a control point, its twin mirrored: the file is that of the command line", async ({ editor }, info) => {
+  await openSample(editor, "Chair");
+  await fitted(editor);
+  await editor.locator("label", { hasText: /^X$/ }).click();
+  const before = await session(editor);
+  const of = ({ points }: typeof before, name: string) => points.find((point) => point.name === name)!;
+  await choose(editor, "armrest-left");
+  await editor.keyboard.press("e");
+  // The gizmo's outermost ring turns about the line of sight: three quarters of its unit from its middle.
+  const at = await screenOf(editor, of(before, "armrest-left").target);
+  const { height } = (await editor.locator(".pane").boundingBox())!;
+  const radius = (0.75 * (1.9 * 0.78 * height)) / 8;
+  const grip = (degrees: number): [number, number] => {
+    const angle = (degrees * Math.PI) / 180;
+    return [at.x + radius * Math.cos(angle), at.y - radius * Math.sin(angle)];
+  };
+  await editor.mouse.move(...grip(60), { steps: 4 });
+  await editor.mouse.down();
+  for (let degrees = 60; degrees <= 110; degrees += 5) await editor.mouse.move(...grip(degrees));
+  await editor.waitForTimeout(300); // the frame after
+  await editor.screenshot({ path: picture("turned.png") });
+  await editor.mouse.up();
+  const after = await session(editor);
+  const turned = of(after, "armrest-left");
+  const { turn } = turned;
+  expect(turn!.degrees).toBeCloseTo(50, 0);
+  expect(turned).toEqual({ ...of(before, "armrest-left"), turn });
+  await expect(editor.getByText(`Turned by ${turn!.degrees.toFixed(1)}°`)).toBeVisible();
+  const twin = of(after, "armrest-right").turn!;
+  expect(twin.degrees).toBe(turn!.degrees);
+  twin.axis.forEach((c, k) => expect(c).toBeCloseTo(k === 0 ? turn!.axis[k]! : -turn!.axis[k]!, 12));
+
+  // The whole drag is one step of undo.
+  await editor.keyboard.press("Control+z");
+  expect((await session(editor)).points).toEqual(before.points);
+  await editor.keyboard.press("Control+Shift+z");
+  expect((await session(editor)).points).toEqual(after.points);
+
+  const saved = await save(editor, /^Bent OBJ/);
+  const points = await save(editor, /^Control points/);
+  writeFileSync(info.outputPath("session.json"), points.bytes);
+  const bent = info.outputPath("bent.obj");
+  command("deform", join(samples, "chair.obj"), "--points", info.outputPath("session.json"), "-o", bent, "-q");
+  const right = vertices(readFileSync(bent, "utf8"));
+  writeFileSync(info.outputPath("plain.json"), JSON.stringify({ ...JSON.parse(points.bytes.toString()), control_points: after.points }));
+  const plain = info.outputPath("plain.obj");
+  command("deform", join(samples, "chair.obj"), "--points", info.outputPath("plain.json"), "-o", plain, "-q");
+  expect(difference(right, vertices(readFileSync(plain, "utf8")))).toBeGreaterThan(0.01);
+  expect(difference(right, vertices(saved.bytes.toString()))).toBeLessThan(1e-5);
+  const shown = await editor.evaluate(() => [...neuralmls.readback()!]);
+  expect(difference(right, shown)).toBeLessThan(1e-4);
 });
 
 test("Escape takes a drag back, and a free drag of a point follows the mouse", async ({ editor }) => {

@@ -12,8 +12,8 @@ for (const name of ["chair", "airplane", "car", "table", "ShapeNetChair1"]) {
     const given = name === "ShapeNetChair1" ? published() : sample(name);
     test.skip(!given, "there is no folder of real files: set NEURALMLS_DATA");
     for (const weights of [neural, classic]) {
-      for (const { transform, temperature, worst, moved, leaning } of await compare(page, given!, weights)) {
-        const what = `${weights.kind}, ${transform}, T = ${temperature}`;
+      for (const { transform, temperature, adherence, worst, moved, leaning } of await compare(page, given!, weights)) {
+        const what = `${weights.kind}, ${transform}, T = ${temperature}, adherence ${adherence}`;
         test.info().annotations.push({ type: "error", description: `${what}: ${worst.toExponential(1)}` });
         expect(moved, what).toBeGreaterThan(0.01);
         expect(worst, what).toBeLessThan(1e-4);

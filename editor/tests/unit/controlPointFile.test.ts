@@ -10,7 +10,7 @@ const session: Session = {
   ],
   selection: [],
   pairs: [[1, 2]],
-  settings: { ...DEFAULT_SETTINGS, kind: "classic", classic: { alpha: 2, epsilon: 0.01 }, temperature: 0.3, mirror: "z" },
+  settings: { ...DEFAULT_SETTINGS, kind: "classic", classic: { alpha: 2, epsilon: 0.01 }, temperature: 0.3, adherence: 0.25, mirror: "z" },
 };
 
 const file = (points: string): string => `{"format": "neuralmls-control-points", "version": 1, "control_points": [${points}]}`;
@@ -74,7 +74,7 @@ describe("control-point files", () => {
   });
 
   it("with settings out of their range have the default ones", () => {
-    const text = file('{"name": "a", "position": [1, 2, 3]}').replace(/}$/, ', "editor": {"settings": {"temperature": -1, "transform": "melt", "neural": {"width": 1e9}}, "pairs": [["a", "b"], 7]}}');
+    const text = file('{"name": "a", "position": [1, 2, 3]}').replace(/}$/, ', "editor": {"settings": {"temperature": -1, "adherence": 1.5, "transform": "melt", "neural": {"width": 1e9}}, "pairs": [["a", "b"], 7]}}');
     const read = parseSession(text, 3);
     expect(read.settings).toEqual(DEFAULT_SETTINGS);
     expect(read.pairs).toEqual([]);

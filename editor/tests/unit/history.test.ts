@@ -25,6 +25,7 @@ describe("history", () => {
       rename(1, "head"),
       toggleLock([1]),
       set("temperature", 0.5),
+      set("adherence", 0),
       set("kind", "classic"),
       select([1, 2]),
       removeSelected(),

@@ -47,7 +47,12 @@ TransformName: TypeAlias = Literal["rigid", "similarity", "affine"]
     multiple=True,
     help="Turn a control point, and what is near it, about x, y, z or an axis of three numbers; may be repeated.",
 )
-@click.option("--exact", is_flag=True, help="Take the control points all the way to their targets, not only near them.")
+@click.option(
+    "--exact/--no-exact",
+    default=None,
+    help="Take the control points all the way to their targets, at any price, or only near them. "
+    "If not given: all the way where they own their places and arrive, else near.",
+)
 @click.option("--check", is_flag=True, help="Say where the result is likely bad, and what would help.")
 @options.json
 @options.quiet
@@ -63,7 +68,7 @@ def deform(
     transform: TransformName,
     moves: Sequence[str],
     turns: Sequence[str],
-    exact: bool,
+    exact: bool | None,
     check: bool,
     json: bool,
     quiet: bool,
@@ -73,7 +78,8 @@ def deform(
     """Bend a shape by its control points.
 
     Writes the same file with new positions. Everything else in the file is carried over;
-    unmoved control points give the very same bytes.
+    unmoved control points give the very same bytes. What a session of the editor sets
+    (weights, transform, temperature, adherence) holds where no option says otherwise.
 
     Example: neuralmls deform chair.obj --points chair.json -o bent.obj
     """
@@ -85,6 +91,7 @@ def deform(
 
     from neuralmls.arrays import as_number
     from neuralmls.cli import deformation, summary
+    from neuralmls.cli.session import Settings, with_session
     from neuralmls.control_points import ControlPoints
     from neuralmls.shape import read
     from neuralmls.turns import Turn
@@ -99,6 +106,8 @@ def deform(
         deformation.check_size(source)
         control_points = ControlPoints.read(points).moved(offsets)
         control_points = control_points.turned({name: Turn(tuple(axis), angle) for name, (axis, angle) in axes.items()})
+        given = Settings(choice, temperature, transform, 0.0 if exact is False else 1.0, careful=exact is None)
+        settings = with_session(given, points)
     warnings = deformation.check_points(control_points, points, source)
     moved = bool((control_points.sources != control_points.targets).any()) or control_points.is_turned
     if moved:
@@ -107,12 +116,12 @@ def deform(
         warnings.append("no control point is moved, so that the output is the input")
     for sentence in warnings:
         console.warning(sentence)
-    result = deformation.deformed(source, control_points, choice, transform, temperature, stages, exact=exact)
-    sentences = deformation.not_parted(control_points, choice, result)
+    result = deformation.deformed(source, control_points, settings, stages)
+    sentences = deformation.not_parted(control_points, settings.choice, result)
     advice = []
     if check:
         with stages.stage("check"):
-            advice = deformation.advice(source, control_points, result, transform, temperature, exact=exact)
+            advice = deformation.advice(source, control_points, result, settings)
     elif exact:  # which the advice says too
         sentences += deformation.not_arrived(control_points, source, result)
     for sentence in sentences:
@@ -125,8 +134,8 @@ def deform(
     for sentence in kept:
         console.warning(sentence)
         warnings.append(sentence)
-    told = summary.summary(source, control_points, choice, transform, temperature, result)
-    told |= {"exact": exact, "output": str(output), "files": files, "warnings": warnings, "seconds": stages.seconds}
+    told = summary.summary(source, control_points, settings, result)
+    told |= {"output": str(output), "files": files, "warnings": warnings, "seconds": stages.seconds}
     if check:
         told["advice"] = [asdict(item) for item in advice]
     out = sys.stderr if to_stdout else sys.stdout

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from neuralmls.advice import Advice, advise
+from neuralmls.cli.session import Settings
 from neuralmls.cli.stages import Stages
 from neuralmls.cli.weights import WeightsChoice
 from neuralmls.control_points import LARGEST, ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ControlPointError, FileError
-from neuralmls.exact import ExactHandles
-from neuralmls.protocol import Transform
+from neuralmls.exact import Aim, ExactHandles
 from neuralmls.shape import Shape
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, softmax
 
@@ -29,7 +29,8 @@ ARRIVED = 1e-6
 class Deformation:
     """A shape's new positions, and how far each control point ended from its target, and from its rotation in degrees.
 
-    `off` is NaN for those that carry none.
+    `off` is NaN for those that carry none; `adherence` is what was used, `kept_soft` why that is 0 where more was asked
+    for.
     """
 
     positions: Floats
@@ -37,6 +38,8 @@ class Deformation:
     weights: NeuralWeights | ShapeAwareWeights | InverseDistanceWeights
     missed: NDArray[np.float64]
     off: NDArray[np.float64]
+    adherence: float
+    kept_soft: str | None
 
 
 def check_size(shape: Shape) -> None:
@@ -81,28 +84,19 @@ def longest_side(shape: Shape) -> float:
     return float((high - low).max())
 
 
-def deformed(
-    shape: Shape,
-    points: ControlPoints,
-    choice: WeightsChoice,
-    transform: Transform,
-    temperature: float,
-    stages: Stages,
-    *,
-    exact: bool = False,
-) -> Deformation:
+def deformed(shape: Shape, points: ControlPoints, settings: Settings, stages: Stages) -> Deformation:
     """Fit the weights, bind the shape to them, and move the control points near their targets, or onto them."""
-    with stages.stage(choice.stage) as report:
-        weights = choice.make(points.sources, shape, report)
+    transform, temperature = settings.transform, settings.temperature
+    with stages.stage(settings.choice.stage) as report:
+        weights = settings.choice.make(points.sources, shape, report)
     with stages.stage("bind") as report:
         deformer = Deformer(shape.positions, weights, transform=transform, progress=report)
     with stages.stage("move") as report:
         rotations, scales = points.rotations, points.scales
-        aimed = (
-            ExactHandles(weights, transform=transform)
-            .aim(points.targets, temperature, float(exact), rotations=rotations, scales=scales)
-            .targets
-        )
+        exact = ExactHandles(weights, transform=transform)
+        aim_at = exact.aim_carefully if settings.careful else exact.aim
+        aim = aim_at(points.targets, temperature, settings.adherence, rotations=rotations, scales=scales)
+        aimed = aim.targets
         maps: NDArray[np.float64] | None = None
         if shape.has_normals:
             y, maps = deformer.deform(
@@ -113,7 +107,29 @@ def deformed(
         handles = Deformer(points.sources, weights, transform=transform)
         arrived, turned = handles.deform(aimed, temperature, rotations=rotations, scales=scales, return_maps=True)
         missed = np.linalg.norm(arrived - points.targets, axis=1)
-    return Deformation(y, maps, weights, missed, _off(turned, rotations))
+    adherence = settings.adherence if aim.soft is None else 0.0
+    kept_soft = _why_soft(aim, exact, points, settings)
+    return Deformation(y, maps, weights, missed, _off(turned, rotations), adherence, kept_soft)
+
+
+def _why_soft(aim: Aim, exact: ExactHandles, points: ControlPoints, settings: Settings) -> str | None:
+    """Why control points were not taken to their targets, and what would take them there, if that is so."""
+    if aim.soft is None:
+        return None
+    name, amount = points.names[aim.soft.control_point], aim.soft.amount
+    said = (
+        f"'{name}' has only {amount:.2g} of the weight at its own place"
+        if aim.soft.reason == "shared"
+        else f"'{name}' would stay {amount:.3g} off all the same"
+    )
+    remedy = exact.remedy(
+        points.targets, settings.temperature, settings.adherence, rotations=points.rotations, scales=points.scales
+    )
+    if remedy is not None:
+        said += f"; {remedy} they arrive"
+    if aim.soft.reason == "shared" and settings.choice.steps is not None:
+        said += "; without --steps it is trained until they own their places"
+    return said
 
 
 def _off(maps: NDArray[np.float64], rotations: NDArray[np.float64] | None) -> NDArray[np.float64]:
@@ -157,24 +173,16 @@ def not_arrived(points: ControlPoints, shape: Shape, result: Deformation) -> lis
     ]
 
 
-def advice(
-    shape: Shape,
-    points: ControlPoints,
-    result: Deformation,
-    transform: Transform,
-    temperature: float,
-    *,
-    exact: bool,
-) -> list[Advice]:
+def advice(shape: Shape, points: ControlPoints, result: Deformation, settings: Settings) -> list[Advice]:
     """Return what is likely bad about the result, and what would help."""
     return advise(
         shape.positions,
         shape.faces,
         result.weights,
         points.targets,
-        transform=transform,
-        temperature=temperature,
-        adherence=float(exact),
+        transform=settings.transform,
+        temperature=settings.temperature,
+        adherence=result.adherence,
         rotations=points.rotations,
         scales=points.scales,
         names=points.names,

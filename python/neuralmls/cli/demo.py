@@ -23,7 +23,8 @@ RESULTS: dict[str, Kind] = {"neural": "neural", "classic": "inverse-distance"}
 def demo(*, output: Path, force: bool) -> None:
     """Bend a sample chair with neural and classic weights.
 
-    Its legs get longer, its back leans. Writes the shapes and a picture of them.
+    Its legs get longer, its back leans; the control points arrive, as `neuralmls deform` has it.
+    Writes the shapes and a picture of them.
     """
     outputs.make_folder(output)
     chair, picture = output / "chair.obj", output / "chair.png"
@@ -33,6 +34,7 @@ def demo(*, output: Path, force: bool) -> None:
     points = sample_files(chair)[2]
 
     from neuralmls.cli.deformation import deformed as deform
+    from neuralmls.cli.session import Settings
     from neuralmls.control_points import ControlPoints
     from neuralmls.shape import read
 
@@ -41,9 +43,11 @@ def demo(*, output: Path, force: bool) -> None:
     said = [(str(chair), "the chair as it is"), (str(points), f"its {len(control_points)} control points and targets")]
     for name, kind in RESULTS.items():
         stages = Stages()
-        result = deform(source, control_points, WeightsChoice(kind), "rigid", 1.0, stages)
+        result = deform(source, control_points, Settings(WeightsChoice(kind), 1.0, "rigid"), stages)
         source.write(deformed[name], result.positions, maps=result.maps)
-        said.append((str(deformed[name]), f"bent with {name} weights, {sum(stages.seconds.values()):.2f} s"))
+        handles = "onto" if result.adherence == 1 else "near"
+        seconds = sum(stages.seconds.values())
+        said.append((str(deformed[name]), f"bent with {name} weights, {handles} all targets, {seconds:.2f} s"))
     missing = None
     try:
         _draw([chair, *deformed.values()], points, picture)

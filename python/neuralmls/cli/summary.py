@@ -9,24 +9,17 @@ import numpy as np
 
 from neuralmls.cli import console
 from neuralmls.cli.deformation import Deformation, longest_side
-from neuralmls.cli.weights import WeightsChoice
+from neuralmls.cli.session import Settings
 from neuralmls.control_points import ControlPoints
-from neuralmls.protocol import Transform
 from neuralmls.shape import Shape
 from neuralmls.weights import InverseDistanceWeights
 
 MOST = 20  # control points in a summary, unless all are asked for
 
 
-def summary(
-    shape: Shape,
-    points: ControlPoints,
-    choice: WeightsChoice,
-    transform: Transform,
-    temperature: float,
-    result: Deformation,
-) -> dict[str, Any]:
+def summary(shape: Shape, points: ControlPoints, settings: Settings, result: Deformation) -> dict[str, Any]:
     """What was done, lengths in file units. The caller adds the output and the seconds."""
+    choice = settings.choice
     weights: dict[str, Any] = {"kind": choice.kind}
     function = result.weights
     if not isinstance(function, InverseDistanceWeights):
@@ -48,8 +41,11 @@ def summary(
         "triangles": 0 if shape.faces is None else len(shape.faces),
         "longest_side": longest_side(shape),
         "weights": weights,
-        "transform": transform,
-        "temperature": temperature,
+        "transform": settings.transform,
+        "temperature": settings.temperature,
+        "adherence": result.adherence,
+        "kept_soft": result.kept_soft,
+        "session": settings.session,
         "control_points": told,
     }
 
@@ -72,6 +68,7 @@ def show(told: dict[str, Any], *, everything: bool, file: TextIO) -> None:
             ),
             ("weights", _weights(weights)),
             ("transform", f"{told['transform']}, temperature {told['temperature']:g}"),
+            *_handles(told),
             ("seconds", ", ".join(f"{name} {value:.2f}" for name, value in told["seconds"].items())),
             ("", f"{sum(told['seconds'].values()):.2f} in all"),
         ],
@@ -105,6 +102,16 @@ def _turn(point: dict[str, Any]) -> tuple[str, str]:
         return "", ""
     scaled = f", scaled {point['scaled']:g}" if point["scaled"] != 1 else ""
     return f"{point['turned']:.4g} deg{scaled}", f"{point['degrees_to_rotation']:.1f} deg"
+
+
+def _handles(told: dict[str, Any]) -> list[tuple[str, str]]:
+    """What took the control points to their targets, or why nothing did; one thing a line."""
+    adherence, kept_soft = told["adherence"], told["kept_soft"]
+    named = {0.0: "soft", 1.0: "exact"}.get(adherence, f"adherence {adherence:g}")
+    lines = [named] if kept_soft is None else ["left soft:", *kept_soft.split("; ")]
+    if told["session"] is not None:
+        lines.append(f"settings of {told['session']}")
+    return list(zip(["handles", *[""] * len(lines)], lines, strict=False))
 
 
 def _weights(weights: dict[str, Any]) -> str:

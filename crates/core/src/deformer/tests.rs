@@ -304,3 +304,20 @@ fn turns_that_do_not_fit_are_refused() {
         assert!(error.to_string().starts_with("turns: "), "{error}");
     }
 }
+
+#[test]
+fn a_frame_after_its_weights_were_prepared_finds_them() {
+    let x: Vec<f64> = (0..300).map(|i| (f64::from(i) * 0.7).sin() * 2.0).collect();
+    let p = [-2.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0, 0.5];
+    let q = [-2.0, 0.0, 0.0, 2.0, 0.5, 0.0, 0.0, 2.5, 0.5];
+    let deformer = bound(&x, &p, 3, Transform::Rigid);
+    deformer.prepare(0.5).unwrap();
+    let prepared = deformer.weights(0.5);
+    let y = deformer.deform(&q, 0.5, false, &mut |_| true).unwrap().positions;
+    assert!(Arc::ptr_eq(&prepared, &deformer.weights(0.5)));
+    assert_eq!(
+        y,
+        bound(&x, &p, 3, Transform::Rigid).deform(&q, 0.5, false, &mut |_| true).unwrap().positions
+    );
+    assert!(deformer.prepare(0.0).is_err());
+}

@@ -103,20 +103,22 @@ fn a_drag_has_no_jumps() {
     }
 }
 
-#[test]
-fn what_cannot_be_reached_is_told_and_stays_finite() {
-    // Two control points with the same weights everywhere are to go to different places.
+/// Two control points of five with the same weights everywhere, which are to go to different places.
+fn of_one_mind() -> ([Vec<f64>; 2], Vec<f32>) {
     let p = points(5, 3);
     let mut logits = logits(&p, 3, 0.8);
-    for i in 0..5 {
-        let shared = logits[i * 5];
-        logits[i * 5 + 1] = shared;
-    }
+    logits[1] = logits[0];
     let first: Vec<f32> = logits[0..5].to_vec();
     logits[5..10].copy_from_slice(&first);
     let mut q = p.clone();
     q[0] += 0.5;
     q[3] -= 0.5;
+    ([p, q], logits)
+}
+
+#[test]
+fn what_cannot_be_reached_is_told_and_stays_finite() {
+    let ([p, q], logits) = of_one_mind();
     for transform in ALL {
         let handles = ExactHandles::new(&p, 3, logits.clone(), transform).unwrap();
         let aim = handles.aim(&q, 1.0, 1.0).unwrap();
@@ -166,4 +168,53 @@ fn turned_handles_arrive_too() {
         assert!(furthest(&landed, &q) < 1e-8, "{transform:?}");
         assert!(furthest(&arrived(&handles, &aim.targets), &q) > 1e-4, "the turns are heeded");
     }
+}
+
+#[test]
+fn a_careful_aim_is_the_aim_where_control_points_own_their_places_and_arrive() {
+    let p = points(8, 3);
+    let q: Vec<f64> = p.iter().enumerate().map(|(at, p)| p + 0.2 * (at as f64).cos()).collect();
+    for transform in ALL {
+        let handles = handles(&p, 3, 0.6, transform);
+        for adherence in [0.0, 0.4, 1.0] {
+            let (aim, careful) = (
+                handles.aim(&q, 1.0, adherence).unwrap(),
+                handles.aim_carefully(&q, 1.0, adherence).unwrap(),
+            );
+            assert_eq!((careful.targets, careful.soft), (aim.targets, None), "{transform:?} {adherence}");
+        }
+        assert!(handles.aim_carefully(&q, 1.0, 1.1).is_err());
+    }
+}
+
+#[test]
+fn a_careful_aim_leaves_soft_what_owns_little() {
+    let p = points(8, 3);
+    let q: Vec<f64> = p.iter().enumerate().map(|(at, p)| p + 0.2 * (at as f64).cos()).collect();
+    let handles = handles(&p, 3, 0.6, Transform::Rigid);
+    let careful = handles.aim_carefully(&q, 5.0, 1.0).unwrap();
+    assert_eq!(careful.targets, q);
+    assert!(
+        matches!(careful.soft, Some(Soft::Shared(_, owned)) if owned > 0.1 && owned < OWNED),
+        "{:?}",
+        careful.soft
+    );
+    assert_eq!(careful.misses, distances(&handles.land(&q, 5.0).unwrap(), &q, 3));
+    assert_eq!(handles.remedy(&q, 5.0, 1.0).unwrap(), Some(Remedy::Temperature(2.5)));
+    assert_eq!(handles.aim_carefully(&q, 2.5, 1.0).unwrap().soft, None);
+    // Where plain MLS arrives by itself there is nothing to leave soft.
+    assert_eq!(handles.aim_carefully(&p, 5.0, 1.0).unwrap().soft, None);
+}
+
+#[test]
+fn a_careful_aim_leaves_soft_what_contradicts_itself_and_knows_what_would_help() {
+    let ([p, q], logits) = of_one_mind();
+    let handles = ExactHandles::new(&p, 3, logits, Transform::Rigid).unwrap();
+    let careful = handles.aim_carefully(&q, 1.0, 1.0).unwrap();
+    assert_eq!(careful.targets, q);
+    assert!(matches!(careful.soft, Some(Soft::Unreached(0 | 1, miss)) if miss > 0.1), "{:?}", careful.soft);
+    assert_eq!(handles.remedy(&q, 1.0, 1.0).unwrap(), Some(Remedy::Affine));
+    let mut affine = handles;
+    affine.set_transform(Transform::Affine);
+    assert_eq!(affine.aim_carefully(&q, 1.0, 1.0).unwrap().soft, None);
 }

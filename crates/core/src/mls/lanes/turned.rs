@@ -41,48 +41,58 @@ fn add_body<const FMA: bool>(
             largest[lane] = multiply_add::<FMA>(-second[lane], f64::from(row.0[lane]), largest[lane]);
         }
     }
-    let dominates = |t: &Turned<3>, lane: usize| more[2].0[lane].to_bits() == t.index as u32;
-    let mut owned = [false; LANES];
+    let dominant = more[2].0.map(f32::to_bits);
+    // 1 where the dominant control point is turned.
+    let mut owned = [0.0; LANES];
     for t in turned {
         for lane in 0..LANES {
-            owned[lane] |= dominates(t, lane);
+            owned[lane] = if dominant[lane] == t.index as u32 { 1.0 } else { owned[lane] };
         }
     }
+    let mut scale = [1.0; LANES];
     for lane in 0..LANES {
-        let (at, scale) = (block * LANES + lane, if owned[lane] { second[lane] } else { 1.0 });
-        for sum in moment.iter_mut().chain(extent.iter_mut()) {
-            sum[at] *= scale;
+        scale[lane] = if owned[lane] > 0.0 { second[lane] } else { 1.0 };
+    }
+    let first = block * LANES;
+    for sum in moment.iter_mut().chain(extent.iter_mut()) {
+        for (sum, scale) in sum[first..first + LANES].iter_mut().zip(scale) {
+            *sum *= scale;
         }
-        for sum in added.rotation.iter_mut().chain([&mut added.scale]) {
-            sum[at] = 0.0;
-        }
+    }
+    for sum in added.rotation.iter_mut().chain([&mut added.scale]) {
+        sum[first..first + LANES].fill(0.0);
     }
     for t in turned {
         let turn: [f64; 9] = std::array::from_fn(|k| t.rotation[k % 3][k / 3]);
-        let residual: [f64; 9] = std::array::from_fn(|k| t.scale * turn[k] - base[k % 3][k / 3]);
         let row = &weights[t.index].0;
+        let mut share = [0.0; LANES];
         for lane in 0..LANES {
-            let at = block * LANES + lane;
             let relative = f64::from(row[lane]);
-            let w = if dominates(t, lane) { largest[lane] } else { second[lane] * relative };
-            let share = t.square * w * if owned[lane] { w } else { relative };
-            for k in 0..9 {
-                let part = if transform == Transform::Affine { residual[k] } else { turn[k] };
-                moment[k][at] = multiply_add::<FMA>(share, part, moment[k][at]);
+            let dominates = dominant[lane] == t.index as u32;
+            let w = if dominates { largest[lane] } else { second[lane] * relative };
+            share[lane] = t.square * w * if owned[lane] > 0.0 { w } else { relative };
+        }
+        let add = |sum: &mut Lane, part: f64| {
+            for (sum, share) in sum[first..first + LANES].iter_mut().zip(share) {
+                *sum = multiply_add::<FMA>(share, part, *sum);
             }
-            match transform {
-                Transform::Rigid => {}
-                Transform::Similarity => {
-                    for k in 0..9 {
-                        added.rotation[k][at] = multiply_add::<FMA>(share, turn[k], added.rotation[k][at]);
-                    }
-                    added.scale[at] = multiply_add::<FMA>(share, t.scale, added.scale[at]);
-                    extent[0][at] += 3.0 * share;
+        };
+        for k in 0..9 {
+            let affine = transform == Transform::Affine;
+            add(&mut moment[k], if affine { t.scale * turn[k] - base[k % 3][k / 3] } else { turn[k] });
+        }
+        match transform {
+            Transform::Rigid => {}
+            Transform::Similarity => {
+                for k in 0..9 {
+                    add(&mut added.rotation[k], turn[k]);
                 }
-                Transform::Affine => {
-                    for diagonal in [0, 3, 5] {
-                        extent[diagonal][at] += share;
-                    }
+                add(&mut added.scale, t.scale);
+                add(&mut extent[0], 3.0);
+            }
+            Transform::Affine => {
+                for diagonal in [0, 3, 5] {
+                    add(&mut extent[diagonal], 1.0);
                 }
             }
         }
