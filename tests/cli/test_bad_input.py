@@ -73,6 +73,11 @@ def test_targets_beyond_all_measure(refused):
     refused(1, "deform", "shape.obj", "--points", "points.csv", "-o", "o.obj", "--move", "top=1e308,0,0", words=words)
 
 
+def test_a_picture_of_what_is_beyond_all_measure(refused, here):
+    (here / "huge.obj").write_text("v -1e308 0 0\nv 1e308 0 0\nv 0 1 0\nf 1 2 3\n")
+    refused(1, "render", "huge.obj", "-o", "out.png", words=("huge.obj", "1e+150 units"))
+
+
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="there is no /dev/zero")
 def test_devices_without_an_end_are_not_read(refused):
     refused(1, "inspect", "/dev/zero", words=("/dev/zero: cannot read: this is a device, not a file",))

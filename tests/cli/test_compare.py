@@ -178,3 +178,11 @@ def test_what_benchmark_cannot_do_is_refused(refused, folder, here):
         refused(2, "benchmark", "poses", "poses", f"--counts={counts}", words=("--counts",))
     refused(1, *POSES[:3], "--counts", "41", "--methods", "classic", words=("block.npz", "at most 40", "found 41"))
     refused(2, "benchmark", words=("missing command",))
+
+
+def test_rotations_are_left_out_and_that_is_said(run, here):
+    points = nm.ControlPoints.read("points.csv").moved({"top": [0, 1, 0]}).turned({"top": nm.Turn((0, 1, 0), 40)})
+    points.write("turned.json")
+    ran = run("compare", "shape.obj", "--points", "turned.json", "--methods", "rbf")
+    assert ran.code == 0
+    assert "rotations of control points are left out" in ran.err

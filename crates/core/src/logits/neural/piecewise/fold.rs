@@ -2,7 +2,7 @@
 
 use super::columns::{Sorted, Term};
 use super::node::{Heads, Part};
-use super::rows::{loads, splats, Block, Bounded};
+use super::rows::{loads, splats, stores, Block, Bounded};
 use crate::simd::{multiversion, Aligned, Lanes, WIDTH};
 
 multiversion! {
@@ -37,12 +37,7 @@ fn inherit_body<L: Lanes>(parent: &Part, sorted: &Sorted, child: &mut Part) {
                 sum[k] = weights.mul_add(map[k], sum[k]);
             }
         }
-        *output = [
-            Aligned(sum[0].store()),
-            Aligned(sum[1].store()),
-            Aligned(sum[2].store()),
-            Aligned(sum[3].store()),
-        ];
+        *output = stores(sum);
     }
 }
 
@@ -85,12 +80,7 @@ fn fold_body<L: Lanes>(
                 sum[k] = L::splat(affine[k].0[row.lane as usize % WIDTH]).mul_add(weights, sum[k]);
             }
         }
-        *output = [
-            Aligned(sum[0].store()),
-            Aligned(sum[1].store()),
-            Aligned(sum[2].store()),
-            Aligned(sum[3].store()),
-        ];
+        *output = stores(sum);
 
         for (index, open) in open.chunks(COLUMNS).enumerate() {
             // The last columns may be done twice, but are stored once.

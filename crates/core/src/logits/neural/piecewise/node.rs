@@ -16,7 +16,7 @@ pub(super) struct Part {
     pub rows: Rows,
     /// `A, c`: outputs in lanes.
     pub output: Vec<[Aligned; 4]>,
-    /// `V_j`: for each column all outputs, in lanes. Empty while it is all zeros.
+    /// `V_j`: for each column all outputs, in lanes. It only grows; empty if it is all zeros.
     pub through: Vec<Aligned>,
 }
 

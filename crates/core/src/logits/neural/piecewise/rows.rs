@@ -161,11 +161,7 @@ fn bound_panels<L: Lanes, const P: usize>(
         }
     }
     for p in 0..P {
-        let mut affine = [Aligned::ZERO; 4];
-        for k in 0..4 {
-            affine[k] = Aligned(maps[p][k].store());
-        }
-        bounded.affine.push(affine);
+        bounded.affine.push(stores(maps[p]));
     }
     let mut spreads = [L::splat(0.0); P];
     for term in sorted.open() {
@@ -196,6 +192,12 @@ fn bound_panels<L: Lanes, const P: usize>(
 #[inline(always)]
 pub(super) fn loads<L: Lanes>(from: &[Aligned; 4]) -> [L; 4] {
     [L::load(&from[0].0), L::load(&from[1].0), L::load(&from[2].0), L::load(&from[3].0)]
+}
+
+/// Four registers to memory.
+#[inline(always)]
+pub(super) fn stores<L: Lanes>(from: [L; 4]) -> [Aligned; 4] {
+    [Aligned(from[0].store()), Aligned(from[1].store()), Aligned(from[2].store()), Aligned(from[3].store())]
 }
 
 /// Four numbers, each in all lanes.
