@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { History, resetTargets, turnSelected } from "../../src/commands/index.ts";
 import { formatSession, parseSession } from "../../src/model/controlPointFile.ts";
 import { type ControlPoint, EMPTY_SESSION, isMoved, type Session } from "../../src/model/session.ts";
-import { mirrorTurn, quaternionOf, rotationOf, scaledRotationOf, type Turn, turnedBy } from "../../src/model/turn.ts";
+import { mirrorTurn, quaternionOf, rotationOf, type Turn, turnedBy, turnsOf } from "../../src/model/turn.ts";
 import { isStill, turnedPoints } from "../../src/shader/turned.ts";
 
 const turn: Turn = { axis: [1, -2, 0.5], degrees: 75, scale: 1.5 };
@@ -21,7 +21,7 @@ const product = (a: readonly number[], b: readonly number[]): number[] =>
 describe("a turn", () => {
   it("is counterclockwise, seen from the tip of its axis", () => {
     close(rotationOf({ axis: [0, 0, 3], degrees: 90, scale: 1 }), [0, -1, 0, 1, 0, 0, 0, 0, 1]);
-    close(scaledRotationOf({ axis: [0, 0, 3], degrees: -270, scale: 2 }), [0, -2, 0, 2, 0, 0, 0, 0, 2]);
+    close([...(turnsOf([{ axis: [0, 0, 3], degrees: -270, scale: 2 }]).turns ?? [])], [0, -2, 0, 2, 0, 0, 0, 0, 2]);
   });
 
   it("by nothing is nothing to the last bit", () => {
