@@ -14,7 +14,7 @@ export PROPTEST_RNG_SEED ?= 1
 demo: .venv/figures.stamp
 	$(BIN)/neuralmls demo -o out --force
 
-test: rust wasm python editor-test fuzz
+test: rust wasm editor python editor-test fuzz
 	@echo "make test: everything passed"
 
 # Times the kernels against PyTorch, NumPy and molesq, and checks every answer. PyTorch from PyPI takes 6 GB of disk.

@@ -23,7 +23,7 @@ from neuralmls import Deformer, NotApplicable
 from neuralmls.experiments.poses import POSE_METHODS, Poses, pose_errors
 from neuralmls.placement import farthest_of
 from neuralmls.weights import shape_aware
-from neuralmls.weights.surface_graph import SurfaceGraph
+from neuralmls.weights.surface_graph import Reach, SurfaceGraph
 
 COUNTS = (12, 40)
 RIVALS = ("rbf", "classic", "arap")
@@ -34,7 +34,7 @@ GROUPS = {
     "checking, free": [(kind, 3, free) for kind in FREE] + [("hand", seed, free) for seed in (1, 2)],
     "checking, paired": [(kind, seed, paired) for kind in PAIRED for seed in (3, 4)],
 }
-SETTINGS = list(product((2.0, 3.0, 4.0), (4.0, 8.0, np.inf), (0.0, 0.5, 0.75, 1.0, np.inf)))  # power, kept, reach
+SETTINGS = list(product((2.0, 2.5, 3.0, 4.0), (4.0, 8.0, np.inf), (0.0, 0.5, 0.75, 1.0, np.inf)))  # power, kept, reach
 
 
 class Given:
@@ -53,14 +53,13 @@ class Found:
 
     nodes: Array
     met: Array
-    far: Array
-    apart: Array
+    along: Reach
 
-    def first_met(self, _: Array) -> Array:
+    def first_met(self, _: Array, __: Reach) -> Array:
         return self.met
 
-    def distances(self, _: Array) -> tuple[Array, Array]:
-        return self.far, self.apart
+    def reach(self, _: Array) -> Reach:
+        return self.along
 
 
 def setting_errors(poses: Poses, count: int) -> dict[str, float]:
@@ -71,8 +70,9 @@ def setting_errors(poses: Poses, count: int) -> dict[str, float]:
     chosen = farthest_of(x, count)
     graph = SurfaceGraph(unit, poses.rest.faces)
     nodes = graph.nearest(unit)
-    far, apart = graph.distances(unit[chosen])
-    found = Found(unit, graph.first_met(unit[chosen])[nodes], far[nodes], apart)
+    along = graph.reach(unit[chosen])
+    met = graph.first_met(unit[chosen], along)
+    found = Found(unit, met[nodes], Reach(along.far[nodes], along.nearest[nodes], along.apart))
     errors = {}
     for power, kept, reach in SETTINGS:
         logits = shape_aware.shape_logits(found, unit[chosen], power=power, kept=kept, reach=reach)

@@ -51,7 +51,7 @@ def stool() -> tuple[np.ndarray, np.ndarray]:
 def along(x: np.ndarray, faces: np.ndarray | None, start: Any, end: Any) -> float:
     """The distance along the shape."""
     graph = SurfaceGraph(np.asarray(x, float), faces)
-    return float(graph.distances(np.array([start], float))[0][graph.nearest(np.array([end], float))[0]])
+    return float(graph.reach(np.array([start], float)).far[graph.nearest(np.array([end], float))[0]])
 
 
 def test_a_path_over_coarse_triangles_is_about_straight() -> None:
@@ -102,7 +102,8 @@ def test_triangles_without_area_and_repeated_points_do_no_harm() -> None:
 
 def test_between_two_control_points_a_walk_meets_either_as_often_and_always_one() -> None:
     graph = SurfaceGraph(*soup([box((-1, -0.1, -0.1), (1, 0.1, 0.1))]))
-    met = graph.first_met(np.array([[-1.0, 0, 0], [1, 0, 0]]))
+    p = np.array([[-1.0, 0, 0], [1, 0, 0]])
+    met = graph.first_met(p, graph.reach(p))
     assert met[graph.nearest(np.array([[0, 0.1, 0]]))[0]] == pytest.approx([0.5, 0.5], abs=0.03)
     assert met.sum(axis=1) == pytest.approx(1)
     assert met.min() >= 0
@@ -112,7 +113,7 @@ def test_a_walk_from_where_a_thin_leg_begins_ends_in_the_trunk() -> None:
     graph = SurfaceGraph(*soup([box((-1, -0.3, -0.3), (0, 0.3, 0.3)), box((-0.05, -0.03, -0.03), (1, 0.03, 0.03))]))
     p = np.array([[-1.0, 0, 0], [1, 0, 0]])
     at = graph.nearest(np.array([[0.05, 0.03, 0]]))[0]
-    assert graph.first_met(p)[at, 0] > 0.75  # by distances alone it would be near the middle
+    assert graph.first_met(p, graph.reach(p))[at, 0] > 0.75  # by distances alone it would be near the middle
 
 
 def test_a_moved_leg_leaves_the_leg_beside_it() -> None:

@@ -17,7 +17,7 @@ from neuralmls.weights.surface_graph import SurfaceGraph
 Array = NDArray[np.float64]
 
 # Chosen once, for all shapes, by studies/shape_aware.py; docs/shape-aware.md has the figures.
-POWER = 3.0
+POWER = 2.5
 KEPT = 8.0  # logits below the largest by at most this are kept
 TAIL = 4.0  # lower ones fall as this times a logarithm: weights as a power, which a network can learn
 EXPONENT = 6.0  # of the straight-line distance, where no control point governs
@@ -46,14 +46,15 @@ class ShapeAwareWeights(NetworkWeights):
         seed: int = 0,
         progress: Progress | None = None,
     ) -> ShapeAwareWeights:
-        """Train a network to give the weights `w_i ~ h_i^(3 s) / E_i^(6 (1 - s))` on a shape.
+        """Train a network to give the weights `w_i ~ h_i^(2.5 s) / E_i^(6 (1 - s))` on a shape.
 
-        `h_i` is the probability that a random walk over the shape meets control point i before the others: over its
-        triangles, across parts that touch or overlap, and from a part that touches none to its nearest. `E_i` is the
-        straight-line distance. `s` is 1 where a control point governs the shape, less than 3/4 of the control points'
-        spacing away, measured along the shape; beyond, at a distance D, where the shape says less and less,
-        `s = (3/4 spacing / D)^4`, and the nearest in space decide. Weights below e^-8 of the largest fall as a power
-        of what they would be: a walk that passes control points is too seldom for a network to learn how seldom.
+        `h_i` is the probability that a random walk over the shape meets control point i, or what it holds around it,
+        before the others: over its triangles, across parts that touch or overlap, and from a part that touches none to
+        its nearest. `E_i` is the straight-line distance. `s` is 1 where a control point governs the shape, less than
+        3/4 of the control points' spacing away, measured along the shape; beyond, at a distance D, where the shape says
+        less and less, `s = (3/4 spacing / D)^4`, and the nearest in space decide. Weights below e^-8 of the largest
+        fall as a power of what they would be: a walk that passes control points is too seldom for a network to learn
+        how seldom.
 
         Between the samples of the surface, and off it, the weights are what the network makes of them, as smooth as the
         paper's. The targets are not needed: one fit serves every drag.
@@ -122,10 +123,10 @@ def shape_logits(
     graph: SurfaceGraph, p: Array, *, power: float = POWER, kept: float = KEPT, reach: float = REACH
 ) -> Array:
     """Return the logits of the control points (m, d) at every node of a shape, (nodes, m); the largest is 0."""
-    met = np.log(np.maximum(graph.first_met(p), LEAST_SHARE))
+    along = graph.reach(p)
+    met = np.log(np.maximum(graph.first_met(p, along), LEAST_SHARE))
     straight = np.log(np.maximum(np.linalg.norm(graph.nodes[:, None] - p, axis=2), LEAST))
-    far, apart = graph.distances(p)
-    share = np.minimum(1, reach * np.median(apart) / np.maximum(far, LEAST))[:, None] ** 4
+    share = np.minimum(1, reach * np.median(along.apart) / np.maximum(along.far, LEAST))[:, None] ** 4
     logits = share * power * met - (1 - share) * EXPONENT * straight
     below = logits.max(axis=1, keepdims=True) - logits
     return np.asarray(-np.minimum(below, kept) - TAIL * np.log1p(np.maximum(below - kept, 0) / TAIL))

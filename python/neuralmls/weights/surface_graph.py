@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,17 @@ from neuralmls.weights.surface_links import CELL, Array, Indices, nearest_to, sc
 
 MOST_SPREAD = 8192  # nodes that `spread` chooses from: every so many-th of more
 ATTACHED = 64  # nodes that a control point is linked to, at most
-FIRM = 10.0  # what links of a control point conduct, a cell away; on a node ten times as much
+FIRM = 1.0  # what links of a control point conduct, a cell away; on a node ten times as much
+HOLD = 0.45  # of the way to the nearest other control point: how far one holds the shape around it
+HELD = 4.0  # how firmly, in the middle, by area over the square of that radius
+
+
+class Reach(NamedTuple):
+    """Shortest paths along a shape."""
+
+    far: Array  # (nodes,): from each node to its nearest control point
+    nearest: Indices  # (nodes,): which that is
+    apart: Array  # (m,): from each control point to the nearest other; infinite where there is none
 
 
 class SurfaceGraph:
@@ -36,9 +46,10 @@ class SurfaceGraph:
     >>> horseshoe = np.array([[0.0, 0], [0, 1], [0.04, 1], [0.04, 0]])
     >>> graph = SurfaceGraph(horseshoe, np.array([[0, 1, 1], [1, 2, 2], [2, 3, 3]]))
     >>> end = graph.nearest(horseshoe)[3]
-    >>> graph.distances(horseshoe[:1])[0][end].round(1)   # not 0.04
+    >>> graph.reach(horseshoe[:1]).far[end].round(1)   # not 0.04
     np.float64(2.0)
-    >>> graph.first_met(horseshoe[[0, 2]])[end].round(2)   # the walk meets the nearer one along the shape
+    >>> p = horseshoe[[0, 2]]
+    >>> graph.first_met(p, graph.reach(p))[end].round(2)   # the walk meets the nearer one along the shape
     array([0., 1.])
     """
 
@@ -46,12 +57,15 @@ class SurfaceGraph:
         self._links = surface_links(x, faces)
         self.nodes = self._links.nodes
 
-    def first_met(self, p: Array) -> Array:
+    def first_met(self, p: Array, reach: Reach) -> Array:
         """Return the probability that a random walk from each node meets each of `p` (m, d) before the others.
 
         The walk takes a link with a probability proportional to what it conducts: the result is the harmonic function
         `h_i` that is 1 at control point i and 0 at the others, (nodes, m), rows sum to 1. It knows how wide the shape
         is: a walk finds its way from a trunk into a thin leg seldom, and from the leg to the trunk soon.
+
+        A control point is no needle, at which a harmonic function would be infinitely steep: it holds the shape around
+        it, less and less up to 0.45 of the way to the nearest other one (`reach`), and a walk may end wherever it does.
 
         Source
         ------
@@ -61,6 +75,11 @@ class SurfaceGraph:
         count, m = len(self.nodes), len(p)
         which, nodes, far = self._attached(p)
         firm = FIRM * CELL / (far + 0.1 * CELL)
+        radius = HOLD * reach.apart[reach.nearest]
+        around = np.flatnonzero(reach.far < radius)
+        density = HELD / radius[around] ** 2 * (1 - (reach.far[around] / radius[around]) ** 2) ** 2
+        which, nodes = np.append(which, reach.nearest[around]), np.append(nodes, around)
+        firm = np.append(firm, density * self._links.areas()[around])
         (a, b), conducts = self._links.ends.T, self._links.conductances
         values = np.concatenate([-conducts, -conducts, conducts, conducts, firm])
         rows, columns = np.concatenate([a, b, a, b, nodes]), np.concatenate([b, a, a, b, nodes])
@@ -73,13 +92,8 @@ class SurfaceGraph:
         )
         return np.asarray(factors.solve(sources))
 
-    def distances(self, p: Array) -> tuple[Array, Array]:
-        """Return the lengths of shortest paths: from each node to its nearest of `p` (m, d), and between these.
-
-        Returns
-        -------
-        (nodes,), and (m,): from each of `p` to the nearest other, infinite where there is none
-        """
+    def reach(self, p: Array) -> Reach:
+        """Return the shortest paths from each node to the nearest of `p` (m, d), and between these."""
         count, m = len(self.nodes), len(p)
         which, nodes, _ = self._attached(p)
         links = np.concatenate([_two_steps(self._links.ends, count), np.stack([which + count, nodes], axis=1)])
@@ -95,7 +109,7 @@ class SurfaceGraph:
         apart = np.full(m, np.inf)
         for end in (a, b):
             np.minimum.at(apart, source[end[across]] - count, (far[a] + lengths + far[b])[across])
-        return far[:count], apart
+        return Reach(far[:count], source[:count] - count, apart)
 
     def nearest(self, x: Array) -> Indices:
         """Return the node nearest to each of the points (k, d)."""

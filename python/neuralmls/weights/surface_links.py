@@ -44,6 +44,11 @@ class Links(NamedTuple):
         """How long each link is."""
         return np.asarray(np.linalg.norm(self.nodes[self.ends[:, 0]] - self.nodes[self.ends[:, 1]], axis=1))
 
+    def areas(self) -> Array:
+        """How much of the surface each node stands for: the part of each strip that is nearer to it."""
+        quarter = 0.25 * self.conductances * self.lengths() ** 2
+        return np.asarray(np.bincount(self.ends.reshape(-1), np.repeat(quarter, 2), len(self.nodes)), dtype=np.float64)
+
     def with_more(self, ends: Indices) -> Links:
         """With links that are no edges."""
         conductances = np.append(self.conductances, np.full(len(ends), EVEN))
