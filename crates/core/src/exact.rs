@@ -105,8 +105,10 @@ impl ExactHandles {
         adherence: f64,
     ) -> Result<Aim, Error> {
         let pose = pose.into();
-        let mut soft = self.aim(pose, temperature, 0.0)?;
-        soft.misses = distances(&self.land(pose, temperature)?, pose.q, self.dim);
+        check_adherence(adherence)?;
+        let landed = self.land(pose, temperature)?;
+        let misses = distances(&landed, pose.q, self.dim);
+        let mut soft = Aim { targets: pose.q.to_vec(), misses, soft: None };
         let reached = REACHED * self.extent(pose.q);
         let (_, miss) = greatest(soft.misses.iter().copied());
         if adherence == 0.0 || miss <= reached {
@@ -122,7 +124,7 @@ impl ExactHandles {
             soft.soft = Some(Soft::Shared(least, 1.0 - lost));
             return Ok(soft);
         }
-        let aim = self.aim(pose, temperature, adherence)?;
+        let aim = self.solve(pose, temperature, adherence, &landed)?;
         let (worst, miss) = greatest(aim.misses.iter().copied());
         if miss > reached {
             soft.soft = Some(Soft::Unreached(worst, miss));
@@ -160,17 +162,20 @@ impl ExactHandles {
     /// # Errors
     /// As [`Deformer::deform`]; where the adherence is not from 0 to 1.
     pub fn aim<'a>(&self, pose: impl Into<Pose<'a>>, temperature: f64, adherence: f64) -> Result<Aim, Error> {
-        let Pose { q, turns } = pose.into();
-        if !(0.0..=1.0).contains(&adherence) {
-            return Err(Error::argument("adherence", format!("expected 0 to 1, found {adherence}")));
-        }
+        let pose = pose.into();
+        check_adherence(adherence)?;
+        self.solve(pose, temperature, adherence, &self.land(pose, temperature)?)
+    }
+
+    /// [`ExactHandles::aim`], where plain MLS takes the control points to `landed`.
+    fn solve(&self, pose: Pose<'_>, temperature: f64, adherence: f64, landed: &[f64]) -> Result<Aim, Error> {
+        let Pose { q, turns } = pose;
         let arrive = |targets: &[f64]| self.land(Pose { q: targets, turns }, temperature);
-        let soft = arrive(q)?;
-        let goal: Vec<f64> = soft.iter().zip(q).map(|(soft, q)| soft + adherence * (q - soft)).collect();
-        let rest = |arrived: Vec<f64>| -> Vec<f64> { goal.iter().zip(arrived).map(|(g, a)| g - a).collect() };
+        let goal: Vec<f64> = landed.iter().zip(q).map(|(soft, q)| soft + adherence * (q - soft)).collect();
+        let rest = |arrived: &[f64]| -> Vec<f64> { goal.iter().zip(arrived).map(|(g, a)| g - a).collect() };
         let enough = ARRIVED * self.extent(q);
 
-        let mut now = Guess { rest: rest(soft), targets: q.to_vec() };
+        let mut now = Guess { rest: rest(landed), targets: q.to_vec() };
         let mut best = now.clone();
         let mut history = History::default();
         let mut halvings = 0;
@@ -181,7 +186,7 @@ impl ExactHandles {
             let step = history.step(&now.rest);
             let step = step.iter().map(|s| s * 0.5f64.powi(halvings));
             let targets: Vec<f64> = now.targets.iter().zip(step).map(|(t, s)| t + s).collect();
-            let next = Guess { rest: rest(arrive(&targets)?), targets };
+            let next = Guess { rest: rest(&arrive(&targets)?), targets };
             if next.square() < best.square() {
                 halvings = 0;
                 history.push(&now, &next);
@@ -207,6 +212,14 @@ impl ExactHandles {
             high - low
         };
         (0..self.dim).map(side).fold(0.0, f64::max)
+    }
+}
+
+fn check_adherence(adherence: f64) -> Result<(), Error> {
+    if (0.0..=1.0).contains(&adherence) {
+        Ok(())
+    } else {
+        Err(Error::argument("adherence", format!("expected 0 to 1, found {adherence}")))
     }
 }
 
