@@ -15,6 +15,7 @@ from benchmarks.definitions import (
     logits_growth,
     million,
     process,
+    shape_aware,
     training,
 )
 from benchmarks.row import Outcome
@@ -34,4 +35,5 @@ ALL: dict[str, Definition] = {
     "growth": growth.run,
     "editor": editor.run,
     "exact": exact.run,
+    "shape-aware": shape_aware.run,
 }
