@@ -34,7 +34,7 @@ GROUPS = {
     "checking, free": [(kind, 3, free) for kind in FREE] + [("hand", seed, free) for seed in (1, 2)],
     "checking, paired": [(kind, seed, paired) for kind in PAIRED for seed in (3, 4)],
 }
-SETTINGS = list(product((2.0, 2.5, 3.0, 4.0), (4.0, 8.0, np.inf), (0.0, 0.5, 0.75, 1.0, np.inf)))  # power, kept, reach
+SETTINGS = list(product((1.5, 2.0, 2.5, 3.0), (4.0, 8.0, np.inf), (0.0, 0.5, 0.75, 1.0, np.inf)))  # power, kept, reach
 
 
 class Given:

@@ -13,7 +13,7 @@ from neuralmls.weights.surface_links import CELL, Array, Indices, nearest_to, sc
 MOST_SPREAD = 8192  # nodes that `spread` chooses from: every so many-th of more
 ATTACHED = 64  # nodes that a control point is linked to, at most
 FIRM = 1.0  # what links of a control point conduct, a cell away; on a node ten times as much
-HOLD = 0.45  # of the way to the nearest other control point: how far one holds the shape around it
+HOLD = 0.8  # of the way to the nearest other control point: how far one holds what is nearest to it
 HELD = 4.0  # how firmly, in the middle, by area over the square of that radius
 
 
@@ -65,7 +65,7 @@ class SurfaceGraph:
         is: a walk finds its way from a trunk into a thin leg seldom, and from the leg to the trunk soon.
 
         A control point is no needle, at which a harmonic function would be infinitely steep: it holds the shape around
-        it, less and less up to 0.45 of the way to the nearest other one (`reach`), and a walk may end wherever it does.
+        it, less and less up to 0.8 of the way to the nearest other one (`reach`), and a walk may end wherever it does.
 
         Source
         ------
