@@ -123,6 +123,20 @@ fn binary_is_told_from_ascii_by_more_than_its_first_word() {
 }
 
 #[test]
+fn zero_bytes_behind_a_text_make_no_binary_file_of_it_however_short_it_becomes() {
+    let long = "7".repeat(600);
+    for normal in ["0 0 1", &format!("0 x{long} 1")] {
+        let text = format!(
+            "solid a\n facet normal {normal}\n outer loop\n vertex 0 0 0\n vertex 1 0 0\n vertex 0 1 0\n endloop\n endfacet\n\
+             endsolid a\0\0\0\n"
+        );
+        let shape = stl(text.as_bytes());
+        let written = shape.write(&[0.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0], None).unwrap();
+        assert_eq!(stl(&written.bytes).positions(), [0.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0]);
+    }
+}
+
+#[test]
 fn refusals_name_the_place() {
     let text = |from: &str, to: &str| refusal(TWO_SOLIDS.replacen(from, to, 1).as_bytes(), Format::Stl);
     for (message, words) in [

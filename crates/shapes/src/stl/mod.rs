@@ -16,12 +16,12 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
 }
 
 /// Many binary files start with "solid" too. What tells: the length that the count of triangles demands, and the zero bytes
-/// that no text has and the start of a binary file hardly lacks.
+/// that a binary file hardly lacks, and a text has behind its end at most.
 fn is_ascii(source: &[u8]) -> bool {
-    const LOOKED_AT: usize = 512;
     let text = source.trim_ascii_start();
+    let padding = text.iter().rev().take_while(|byte| **byte == 0 || byte.is_ascii_whitespace()).count();
     let solid = text.len() >= 5 && text[..5].eq_ignore_ascii_case(b"solid");
-    solid && !binary::has_exact_length(source) && !source[..source.len().min(LOOKED_AT)].contains(&0)
+    solid && !binary::has_exact_length(source) && !text[..text.len() - padding].contains(&0)
 }
 
 /// Triangles of corners in file order.
