@@ -56,6 +56,16 @@ pub enum Soft {
     Unreached(usize, f64),
 }
 
+impl Soft {
+    /// Its name in every face, the control point, and how much.
+    pub fn named(self) -> (&'static str, usize, f64) {
+        match self {
+            Soft::Shared(control_point, owned) => ("shared", control_point, owned),
+            Soft::Unreached(control_point, miss) => ("unreached", control_point, miss),
+        }
+    }
+}
+
 /// What would let control points arrive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Remedy {

@@ -1,11 +1,10 @@
 //! What is likely bad about a deformation.
 
 use neuralmls_core::advice::{Better, Kind};
-use neuralmls_core::Pose;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::deformer::transform;
+use crate::deformer::{pose, transform};
 use crate::errors::from_core;
 
 /// Places on a shape, bound to the weights of control points.
@@ -63,8 +62,7 @@ impl Probe {
         temperature: f64,
         adherence: f64,
     ) -> PyResult<Vec<Advice>> {
-        let turns = turns.as_ref().map(|turns| turns.as_slice()).transpose()?;
-        let pose = Pose { q: q.as_slice()?, turns };
+        let pose = pose(&q, turns.as_ref())?;
         let found = py.detach(|| self.probe.advise(pose, temperature, adherence));
         let named = |advice: neuralmls_core::advice::Advice| {
             let (kind, amount) = match advice.kind {
@@ -90,8 +88,7 @@ impl Probe {
         temperature: f64,
         adherence: f64,
     ) -> PyResult<(f64, f64)> {
-        let turns = turns.as_ref().map(|turns| turns.as_slice()).transpose()?;
-        let pose = Pose { q: q.as_slice()?, turns };
+        let pose = pose(&q, turns.as_ref())?;
         py.detach(|| self.probe.parts(pose, temperature, adherence)).map_err(|error| from_core(error, None))
     }
 
@@ -103,8 +100,7 @@ impl Probe {
         temperature: f64,
         adherence: f64,
     ) -> PyResult<Look<'py>> {
-        let turns = turns.as_ref().map(|turns| turns.as_slice()).transpose()?;
-        let pose = Pose { q: q.as_slice()?, turns };
+        let pose = pose(&q, turns.as_ref())?;
         let look = py.detach(|| self.probe.look(pose, temperature, adherence));
         let look = look.map_err(|error| from_core(error, None))?;
         let count = look.determinants.len();

@@ -18,6 +18,15 @@ pub(crate) struct Deformer {
 /// Positions n x d, and the maps n x d x d where they were asked for.
 type Deformed<'py> = (Bound<'py, PyArray2<f64>>, Option<Bound<'py, PyArray3<f64>>>);
 
+/// Targets, and turns where there are any, as the core takes them.
+pub(crate) fn pose<'a>(
+    q: &'a PyReadonlyArray2<'_, f64>,
+    turns: Option<&'a PyReadonlyArray3<'_, f64>>,
+) -> PyResult<Pose<'a>> {
+    let turns = turns.map(|turns| turns.as_slice()).transpose()?;
+    Ok(Pose { q: q.as_slice()?, turns })
+}
+
 /// A transform by its name.
 pub(crate) fn transform(name: &str) -> PyResult<Transform> {
     match name {
@@ -68,8 +77,7 @@ impl Deformer {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Deformed<'py>> {
         let (n, d) = (self.inner.len(), self.dim);
-        let turns = turns.as_ref().map(|turns| turns.as_slice()).transpose()?;
-        let pose = Pose { q: q.as_slice()?, turns };
+        let pose = pose(&q, turns.as_ref())?;
         let positions = out.unwrap_or_else(|| PyArray2::zeros(py, [n, d], false));
         let maps = maps.then(|| PyArray3::zeros(py, [n, d, d], false));
         {

@@ -4,7 +4,7 @@ use neuralmls_core::{Error, Pose, Remedy, Soft};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::deformer::transform;
+use crate::deformer::{pose, transform};
 use crate::errors::from_core;
 
 /// Solves for effective targets.
@@ -60,8 +60,7 @@ impl ExactHandles {
         temperature: f64,
         adherence: f64,
     ) -> PyResult<Option<(&'static str, Option<f64>)>> {
-        let turns = turns.as_ref().map(|turns| turns.as_slice()).transpose()?;
-        let pose = Pose { q: q.as_slice()?, turns };
+        let pose = pose(&q, turns.as_ref())?;
         let remedy = py
             .detach(|| self.0.remedy(pose, temperature, adherence))
             .map_err(|error| from_core(error, None))?;
@@ -79,12 +78,8 @@ fn given<'py>(
     turns: Option<PyReadonlyArray3<'py, f64>>,
     aimed: impl FnOnce(Pose<'_>) -> Result<neuralmls_core::Aim, Error> + Send,
 ) -> PyResult<Aim<'py>> {
-    let turns = turns.as_ref().map(|turns| turns.as_slice()).transpose()?;
-    let (shape, pose) = ([q.shape()[0], q.shape()[1]], Pose { q: q.as_slice()?, turns });
+    let (shape, pose) = ([q.shape()[0], q.shape()[1]], pose(&q, turns.as_ref())?);
     let aim = py.detach(|| aimed(pose)).map_err(|error| from_core(error, None))?;
-    let soft = aim.soft.map(|soft| match soft {
-        Soft::Shared(control_point, owned) => ("shared", control_point, owned),
-        Soft::Unreached(control_point, miss) => ("unreached", control_point, miss),
-    });
+    let soft = aim.soft.map(Soft::named);
     Ok((PyArray1::from_vec(py, aim.targets).reshape(shape)?, PyArray1::from_vec(py, aim.misses), soft))
 }

@@ -1,7 +1,7 @@
 //! Control points that arrive. The main thread has one of these for each frame of a drag; workers have it in their fit.
 
 use js_sys::{Array, Float64Array};
-use neuralmls_core::{Aim, Error, ExactHandles, Pose, Remedy, Soft, Transform};
+use neuralmls_core::{Aim, Error, ExactHandles, Pose, Remedy, Transform};
 use wasm_bindgen::prelude::*;
 
 use crate::refused;
@@ -55,10 +55,7 @@ impl Handles {
         let landed = self.0.land(Pose { q: &targets, ..pose }, temperature).map_err(refused)?;
         let result = Array::of1(&Float64Array::from(&landed[..]));
         if let Some(soft) = soft {
-            let (reason, control_point, amount) = match soft {
-                Soft::Shared(control_point, owned) => ("shared", control_point, owned),
-                Soft::Unreached(control_point, miss) => ("unreached", control_point, miss),
-            };
+            let (reason, control_point, amount) = soft.named();
             let remedy = match self.0.remedy(pose, temperature, adherence).map_err(refused)? {
                 Some(Remedy::Temperature(other)) => JsValue::from_f64(other),
                 Some(Remedy::Affine) => JsValue::from_str("affine"),
