@@ -66,7 +66,7 @@ class NetworkWeights:
     def _bind(
         self, x: ArrayLike, points: NDArray[np.float64], transform: Transform, progress: Progress | None
     ) -> _core.Deformer:
-        """Bind `points`, which are `x`, to their logits: what `Deformer` does with any weights, but nothing is copied."""
+        """Bind `points`, which are `x`: what `Deformer` does with the logits of any weights, but nothing is copied."""
         tree = x._core if isinstance(x, PointTree) else None
         return _core.Deformer.of_network(points, self._p, self._network, tree, transform, progress)
 
