@@ -122,6 +122,25 @@ mod tests {
     }
 
     #[test]
+    fn is_around_all_points_however_many() {
+        for dim in 1..4 {
+            for n in [5, 4096, 30_001] {
+                let mut points = vec![0.5; n * dim];
+                points[0] = -3.0;
+                *points.last_mut().unwrap() = 7.0;
+                let (mut min, mut max) = (vec![0.5f64; dim], vec![0.5f64; dim]);
+                for (at, c) in points.iter().enumerate() {
+                    min[at % dim] = if at < dim { *c } else { min[at % dim].min(*c) };
+                    max[at % dim] = if at < dim { *c } else { max[at % dim].max(*c) };
+                }
+                let expected = Frame::of_box(&min, &max).unwrap();
+                assert_eq!(Frame::around(&points, dim), expected, "{n} points in {dim}D");
+            }
+        }
+        assert_eq!(Frame::around(&[], 3), Frame::IDENTITY);
+    }
+
+    #[test]
     fn a_box_without_size_is_refused_by_name() {
         let error = Frame::of_box(&[1.0; 3], &[1.0; 3]).unwrap_err();
         assert!(error.to_string().contains("one place"), "{error}");
