@@ -45,10 +45,19 @@ fn rotations_body<L: Lanes>(
     sound: &mut Lane,
 ) {
     let width = L::Doubles::WIDTH;
-    for (turn, quaternion) in turn.iter_mut().zip(&start.quaternion) {
-        for first in (0..BATCH).step_by(width) {
-            L::Doubles::load_singles(&quaternion.as_flattened()[first..]).store(&mut turn[first..]);
+    for first in (0..BATCH).step_by(width) {
+        let mut u = [L::Doubles::splat(0.0); 4];
+        for k in 0..4 {
+            u[k] = L::Doubles::load_singles(&start.quaternion[k].as_flattened()[first..]);
         }
+        let (k, flat) = (L::Doubles::load_singles(&start.k.as_flattened()[first..]), L::Doubles::splat(FLAT));
+        if !L::Doubles::all(flat.less(k)) {
+            let aligned = aligned(&target::<L::Doubles>(moment, start, anchor, first), anchor);
+            for c in 0..4 {
+                u[c] = L::Doubles::select(flat.less(k), u[c], aligned[c]);
+            }
+        }
+        store(u, first, turn);
     }
     let mut open = [true; BATCH];
     for step in 0..=MOST_STEPS {
@@ -79,16 +88,13 @@ fn better<D: Doubles>(
     sound: &mut Lane,
 ) -> bool {
     let (zero, one) = (D::splat(0.0), D::splat(1.0));
-    let inverse = D::load_singles(&start.inverse.as_flattened()[first..]);
-    let mut a = load::<D, 9>(moment, first);
-    for k in 0..9 {
-        a[k] = a[k].mul_add(inverse, D::splat(ANCHOR_WEIGHT * anchor.matrix[k % 3][k / 3]));
-    }
+    let a = target::<D>(moment, start, anchor, first);
     let u = load::<D, 4>(turn, first);
     let Step { z, size, rise, close, sound: good } = newton(&a, &u);
     if D::all(close) || step == MOST_STEPS {
         store(turned(&u, scaled(&z, one.sub(size))), first, turn);
-        let good = D::and(D::and(good, close), zero.less(inverse));
+        let known = zero.less(D::load_singles(&start.inverse.as_flattened()[first..]));
+        let good = D::and(D::and(good, close), known);
         D::select(good, one, zero).store(&mut sound[first..]);
         return false;
     }
@@ -96,16 +102,20 @@ fn better<D: Doubles>(
     let root = size.mul_add(D::splat(4.0), one).sqrt().add(one);
     let ahead = root.inverse().add(root.inverse());
     let behind = D::splat(-0.5).mul(root).mul(size.inverse());
-    let mut u = turned(&u, scaled(&z, D::select(rise.less(zero), behind, ahead)));
-    if step == 0 {
-        let flat = D::load_singles(&start.k.as_flattened()[first..]).less(D::splat(FLAT));
-        let aligned = aligned(&a, anchor);
-        for k in 0..4 {
-            u[k] = D::select(flat, aligned[k], u[k]);
-        }
-    }
+    let u = turned(&u, scaled(&z, D::select(rise.less(zero), behind, ahead)));
     store(scaled(&u, square_of(&u).sqrt().inverse()), first, turn);
     true
+}
+
+/// A.
+#[inline(always)]
+fn target<D: Doubles>(moment: &[Lane; 9], start: &Start, anchor: &Turning, first: usize) -> [D; 9] {
+    let inverse = D::load_singles(&start.inverse.as_flattened()[first..]);
+    let mut a = load::<D, 9>(moment, first);
+    for k in 0..9 {
+        a[k] = a[k].mul_add(inverse, D::splat(ANCHOR_WEIGHT * anchor.matrix[k % 3][k / 3]));
+    }
+    a
 }
 
 /// Of A close to `s a b^T` the rotation from a to b that turns least after the anchor: what A leaves open follows that.
@@ -141,7 +151,8 @@ fn aligned<D: Doubles>(a: &[D; 9], anchor: &Turning) -> [D; 4] {
     ];
     let [qw, qx, qy, qz] = anchor.quaternion;
     let least = [D::splat(qw), D::splat(qx), D::splat(qy), D::splat(qz)];
-    turned(&least, scaled(&across, length.add(dot(&by_anchor, &to)).inverse()))
+    let u = turned(&least, scaled(&across, length.add(dot(&by_anchor, &to)).inverse()));
+    scaled(&u, square_of(&u).sqrt().inverse())
 }
 
 #[inline(always)]

@@ -18,6 +18,8 @@ use crate::simd::{multiversion, Lanes, WIDTH};
 
 /// The weight of the anchor here.
 const ANCHOR: f32 = 1e-6;
+/// What is added to each entry, so that no product of some of them is below 1e-38, where numbers cost a hundred times as much.
+const LEAST: f32 = 1e-9;
 /// Newton's steps: what they leave, the corrections in double precision take away.
 const STEPS: usize = 3;
 
@@ -40,7 +42,7 @@ fn start_body<L: Lanes>(g: &Matrix<3>, start: &mut Start) {
         let inverse = L::select(square.less(L::splat(1e30)), inverse, L::splat(0.0));
         start.inverse[block] = inverse.store();
         for k in 0..9 {
-            let anchor = L::splat(ANCHOR * g[k % 3][k / 3] as f32);
+            let anchor = L::splat(ANCHOR * g[k % 3][k / 3] as f32 + LEAST);
             moment[k] = moment[k].mul_add(inverse, anchor);
             start.moment[k][block] = moment[k].store();
         }
@@ -98,38 +100,43 @@ fn quaternion_of<L: Lanes>(a: [L; 9], v: L) -> [L; 4] {
     let n22 = minus.sub(xx).sub(largest);
     let n33 = zero.sub(minus).sub(xx).sub(largest);
     // Minors of the upper two rows, and of the lower two.
-    let s0 = minor(n00, n11, n01, n01);
-    let s1 = minor(n00, n12, n01, n02);
-    let s2 = minor(n00, n13, n01, n03);
     let s3 = minor(n01, n12, n11, n02);
     let s4 = minor(n01, n13, n11, n03);
     let s5 = minor(n02, n13, n12, n03);
     let c5 = minor(n22, n33, n23, n23);
     let c4 = minor(n12, n33, n13, n23);
     let c3 = minor(n12, n23, n13, n22);
-    let c2 = minor(n02, n33, n03, n23);
-    let c1 = minor(n02, n23, n03, n22);
     // a b - c d + e f.
     let three = |a: L, b: L, c: L, d: L, e: L, f: L| a.mul_add(b, minor(e, f, c, d));
     let b00 = three(n11, c5, n12, c4, n13, c3);
     let b01 = three(n02, c4, n01, c5, zero.sub(n03), c3);
     let b02 = three(n13, s5, n23, s4, n33, s3);
     let b03 = three(n22, s4, n12, s5, zero.sub(n23), s3);
-    let b11 = three(n00, c5, n02, c2, n03, c1);
-    let b12 = three(n23, s2, n03, s5, zero.sub(n33), s1);
-    let b13 = three(n02, s5, n22, s2, n23, s1);
-    let b22 = three(n03, s4, n13, s2, n33, s0);
-    let b23 = three(n12, s2, n02, s4, zero.sub(n23), s0);
-    let b33 = three(n02, s3, n12, s1, n22, s0);
-    let (mut u, mut best) = ([b00, b01, b02, b03], b00.abs());
-    for (column, diagonal) in
-        [([b01, b11, b12, b13], b11), ([b02, b12, b22, b23], b22), ([b03, b13, b23, b33], b33)]
-    {
-        let better = best.less(diagonal.abs());
-        for i in 0..4 {
-            u[i] = L::select(better, column[i], u[i]);
+    let mut u = [b00, b01, b02, b03];
+    // The first column is 0 where the turn is a half one; up to 150 degrees it is good.
+    let good = square_of(&u).mul(L::splat(0.07)).less(b00.mul(b00));
+    if L::bits(good) != (1 << WIDTH) - 1 {
+        let s0 = minor(n00, n11, n01, n01);
+        let s1 = minor(n00, n12, n01, n02);
+        let s2 = minor(n00, n13, n01, n03);
+        let c2 = minor(n02, n33, n03, n23);
+        let c1 = minor(n02, n23, n03, n22);
+        let b11 = three(n00, c5, n02, c2, n03, c1);
+        let b12 = three(n23, s2, n03, s5, zero.sub(n33), s1);
+        let b13 = three(n02, s5, n22, s2, n23, s1);
+        let b22 = three(n03, s4, n13, s2, n33, s0);
+        let b23 = three(n12, s2, n02, s4, zero.sub(n23), s0);
+        let b33 = three(n02, s3, n12, s1, n22, s0);
+        let mut best = b00.abs();
+        for (column, diagonal) in
+            [([b01, b11, b12, b13], b11), ([b02, b12, b22, b23], b22), ([b03, b13, b23, b33], b33)]
+        {
+            let better = best.less(diagonal.abs());
+            for i in 0..4 {
+                u[i] = L::select(better, column[i], u[i]);
+            }
+            best = best.max(diagonal.abs());
         }
-        best = best.max(diagonal.abs());
     }
     let size = square_of(&u).max(L::splat(1e-36)).inverse_sqrt();
     [u[0].mul(size), u[1].mul(size), u[2].mul(size), u[3].mul(size)]
