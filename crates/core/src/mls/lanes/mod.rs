@@ -67,6 +67,12 @@ struct Turning {
     quaternion: [f64; 4],
 }
 
+impl Turning {
+    fn new(matrix: Matrix<3>) -> Self {
+        Turning { matrix, quaternion: best_quaternion(&transposed(&matrix)) }
+    }
+}
+
 /// Points of a batch in the order of memory, with room for what becomes of them.
 pub(crate) struct BatchPoints<'a> {
     /// At most 64 points of 3 coordinates, as they were given.
@@ -150,8 +156,7 @@ impl LaneHandles {
             column.resize(points.len().next_multiple_of(16), 0.0);
             column
         });
-        let matrix = anchor.rotation;
-        let turning = Turning { matrix, quaternion: best_quaternion(&transposed(&matrix)) };
+        let turning = Turning::new(anchor.rotation);
         LaneHandles { simd: Simd::detect(), transform, anchor, frame, points, columns, turning, turned }
     }
 
@@ -183,10 +188,7 @@ impl LaneHandles {
             }
         }
         if self.transform != Transform::Affine {
-            let Scratch { moment, start, turn, change, sound, .. } = &mut *scratch;
-            round(simd, moment, &mut start.moment);
-            start::start(simd, &self.anchor.rotation, start);
-            rotation::rotations(simd, moment, start, &self.turning, turn, change, sound);
+            rotate(simd, &self.turning, scratch);
         }
         if self.transform != Transform::Rigid {
             finish(simd, self.transform, linear, !self.turned.is_empty(), scratch);
@@ -199,6 +201,14 @@ impl LaneHandles {
             }
         }
     }
+}
+
+/// From moments to `R - I`.
+fn rotate(simd: Simd, anchor: &Turning, scratch: &mut Scratch) {
+    let Scratch { moment, start, turn, change, sound, .. } = scratch;
+    round(simd, moment, &mut start.moment);
+    start::start(simd, &anchor.matrix, start);
+    rotation::rotations(simd, moment, start, anchor, turn, change, sound);
 }
 
 multiversion_loops! {
