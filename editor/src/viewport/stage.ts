@@ -14,6 +14,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Clouds } from "./cloud.ts";
+import { still } from "./still.ts";
 
 const FIELD_OF_VIEW = 32;
 /** Room around the shape. */
@@ -51,8 +52,9 @@ export class Stage {
     key.position.set(-1.2, 1.8, 2.2);
     const fill = new DirectionalLight(0xdfe8ff, 0.7);
     fill.position.set(2.5, -0.6, 1);
-    this.camera.add(key, key.target, fill, fill.target);
-    this.scene.add(this.camera, new HemisphereLight(0xffffff, 0x8a8378, 1.15));
+    this.camera.add(...[key, key.target, fill, fill.target].map(still));
+    this.scene.add(this.camera, still(new HemisphereLight(0xffffff, 0x8a8378, 1.15)));
+    still(this.scene);
     new ResizeObserver(() => this.resize()).observe(host);
   }
 
