@@ -86,6 +86,44 @@ test("in the comparison the gizmo is on the side that takes the pointer alone", 
   expect(far).toBe(0);
 });
 
+test("while one drags by an axis of the gizmo, a line in its colour shows it", async ({ editor }) => {
+  await openSample(editor, "Chair");
+  await fitted(editor);
+  await choose(editor, "armrest-left");
+  const { target } = (await session(editor)).points.find(({ name }) => name === "armrest-left")!;
+  const at = await screenOf(editor, target);
+  const above = await screenOf(editor, [target[0], target[1] + 0.1, target[2]]);
+  const length = Math.hypot(above.x - at.x, above.y - at.y);
+  const along = (far: number) => ({ x: at.x + (far * (above.x - at.x)) / length, y: at.y + (far * (above.y - at.y)) / length });
+  /** The part of the axis that is green, beyond the gizmo. */
+  const green = async () => {
+    const { width, rgba } = await pixels(editor, await editor.screenshot());
+    const far = Array.from({ length: 60 }, (_, i) => along(100 + 2 * i));
+    const isGreen = ({ x, y }: { x: number; y: number }) =>
+      [-1, 0, 1].some((beside) => {
+        const [r, g, b] = rgba.subarray(4 * (Math.round(y) * width + Math.round(x) + beside));
+        return g! > r! + 10 && g! > b! + 10;
+      });
+    return far.filter(isGreen).length / far.length;
+  };
+  const drag = async () => {
+    await editor.mouse.move(along(55).x, along(55).y, { steps: 4 });
+    await editor.mouse.down();
+    for (const far of [60, 65, 70]) await editor.mouse.move(along(far).x, along(far).y);
+  };
+  await editor.waitForTimeout(300); // the gizmo is there with the next frame
+  expect(await green()).toBe(0);
+  await drag();
+  await expect.poll(green).toBeGreaterThan(0.9);
+  await editor.keyboard.press("Escape");
+  await expect.poll(green).toBe(0);
+  await editor.mouse.up();
+  await drag();
+  await expect.poll(green).toBeGreaterThan(0.9);
+  await editor.mouse.up();
+  await expect.poll(green).toBe(0);
+});
+
 test("a cloud of points is shaded by depth", async ({ editor }) => {
   const lines: string[] = [];
   // A ball in front of a wall.
