@@ -31,7 +31,9 @@ export class Viewport {
   readonly #pointer: Pointer;
   readonly #times = new FrameTimes();
   readonly #sides: Sides;
-  #picking: Picking | undefined;
+  /** What rays meet, made when it is first asked for. */
+  #picking: Partial<Record<Slot, Picking>> = {};
+  #mesh: { index: Uint32Array; bvh: SerializedBVH } | undefined;
   #space = new Space({ centre: [0, 0, 0], half: 1 }, 3);
   #view: View;
   #stale = true;
@@ -96,7 +98,8 @@ export class Viewport {
     this.#gizmo.setDimension(dim);
     this.#pointer.step = this.#space.step;
     this.#sides.setShape(drawn, this.#space);
-    this.#picking = new Picking(drawn.rest.positions, () => this.#sides.read("main"), mesh);
+    this.#picking = {};
+    this.#mesh = mesh;
     this.#home();
     this.invalidate();
   }
@@ -177,7 +180,7 @@ export class Viewport {
   /** Something that is shown has changed. */
   invalidate(): void {
     this.#stale = true;
-    this.#picking?.invalidate();
+    for (const picking of Object.values(this.#picking)) picking.invalidate();
     this.stage.request();
   }
 
@@ -247,11 +250,11 @@ export class Viewport {
   }
 
   #meet(ray: Ray, at: Vector2, through: boolean): Hit | undefined {
+    if (!this.drawn) return undefined;
     const { clientWidth, clientHeight } = this.stage.pane;
-    return (
-      this.#picking?.meet(ray, through) ??
-      this.#picking?.nearest(at, new Vector2(clientWidth, clientHeight), this.stage.camera)
-    );
+    const slot = this.stage.onRight ? "comparison" : "main";
+    const picking = (this.#picking[slot] ??= new Picking(this.drawn.rest.positions, () => this.#sides.read(slot), this.#mesh));
+    return picking.meet(ray, through) ?? picking.nearest(at, new Vector2(clientWidth, clientHeight), this.stage.camera);
   }
 
   #click(hit: Hit | undefined): void {
@@ -266,7 +269,7 @@ export class Viewport {
 
   #showSide(right: boolean): void {
     // What one drags by is on the side that takes the pointer.
-    this.#gizmo.visible = !right;
+    this.#gizmo.visible = right === this.stage.onRight;
     this.#sides.show(right ? "comparison" : "main");
   }
 }

@@ -124,6 +124,77 @@ test("while one drags by an axis of the gizmo, a line in its colour shows it", a
   await expect.poll(green).toBe(0);
 });
 
+test("in the comparison both halves take the pointer", async ({ editor }) => {
+  await openSample(editor, "Chair");
+  await fitted(editor);
+  const before = (await session(editor)).points.find(({ name }) => name === "back-top-left")!;
+  await editor.getByRole("button", { name: "Compare" }).click();
+  await expect.poll(() => editor.evaluate(() => neuralmls.state().comparisonFit.status), { timeout: 60_000 }).toBe("ready");
+  const left = await screenOf(editor, before.target);
+  const { width } = (await editor.locator(".pane").boundingBox())!;
+
+  // A drag of a control point, which follows the mouse.
+  await editor.mouse.move(left.x + width, left.y);
+  await editor.mouse.down();
+  await editor.mouse.move(left.x + width + 40, left.y - 30, { steps: 5 });
+  await editor.mouse.up();
+  const moved = (await session(editor)).points.find(({ id }) => id === before.id)!;
+  const there = await screenOf(editor, moved.target);
+  expect(Math.hypot(there.x - left.x - width - 40, there.y - left.y + 30)).toBeLessThan(2);
+
+  // A click meets the surface that is seen there, which the other weights have taken elsewhere.
+  const click = async (x: number, y: number) => {
+    const { points } = await session(editor);
+    await editor.mouse.move(x, y);
+    await editor.mouse.click(x, y);
+    const after = (await session(editor)).points;
+    expect(after).toHaveLength(points.length + 1);
+    const added = after.at(-1)!;
+    const seen = await screenOf(editor, added.target);
+    expect(Math.hypot(seen.x - x, seen.y - y)).toBeLessThan(1);
+    await editor.keyboard.press("Control+z");
+    await fitted(editor);
+    return added.position;
+  };
+  await editor.keyboard.press("Escape"); // the gizmo is not in the way
+  const cushion = await screenOf(editor, [0, 0.47, 0]);
+  const onRight = await click(cushion.x, cushion.y);
+  const onLeft = await click(cushion.x - width, cushion.y);
+  expect(Math.hypot(...onRight.map((c, k) => c - onLeft[k]!))).toBeGreaterThan(1e-4);
+
+  // Turning and zooming, seen in both halves alike.
+  const empty = { x: width + 60, y: 600 };
+  await editor.mouse.move(empty.x, empty.y);
+  const turned = await screenOf(editor, before.target);
+  await editor.mouse.down();
+  await editor.mouse.move(empty.x + 60, empty.y, { steps: 4 });
+  await editor.mouse.up();
+  const zoomed = await screenOf(editor, before.target);
+  expect(Math.hypot(zoomed.x - turned.x, zoomed.y - turned.y)).toBeGreaterThan(10);
+  await editor.mouse.wheel(0, -500);
+  await expect.poll(async () => {
+    const now = await screenOf(editor, before.target);
+    return Math.hypot(now.x - zoomed.x, now.y - zoomed.y);
+  }).toBeGreaterThan(10);
+});
+
+test("in the comparison a finger selects in the right half", async ({ browser, server }) => {
+  const context = await browser.newContext({ viewport: { width: 1024, height: 768 }, hasTouch: true });
+  const page = await context.newPage();
+  await page.goto(server.url);
+  await page.getByRole("button", { name: "Chair", exact: true }).tap();
+  await opened(page, "chair.obj");
+  await fitted(page);
+  await page.getByRole("button", { name: "Compare" }).tap();
+  await expect.poll(() => page.evaluate(() => neuralmls.state().comparisonFit.status), { timeout: 60_000 }).toBe("ready");
+  const [point] = (await session(page)).points;
+  const at = await screenOf(page, point!.target);
+  const { width } = (await page.locator(".pane").boundingBox())!;
+  await page.touchscreen.tap(at.x + width, at.y);
+  expect((await session(page)).selection).toEqual([point!.id]);
+  await context.close();
+});
+
 test("a cloud of points is shaded by depth", async ({ editor }) => {
   const lines: string[] = [];
   // A ball in front of a wall.
