@@ -195,6 +195,25 @@ test("in the comparison a finger selects in the right half", async ({ browser, s
   await context.close();
 });
 
+test("names are whole in the list of control points, and the panel's end can be reached in a low window", async ({ editor }) => {
+  await openSample(editor, "Chair");
+  await fitted(editor);
+  await editor.locator("label", { hasText: /^X$/ }).click();
+  await expect.poll(async () => (await session(editor)).settings.mirror).toBe("x");
+  const list = editor.getByRole("list", { name: "Control points" });
+  const cut = await list.locator(".name").evaluateAll((names) => names.filter((name) => name.scrollWidth > name.clientWidth).map((name) => name.textContent));
+  expect(cut).toEqual([]);
+  // What is chosen on the shape is brought into sight in the list.
+  const { points } = await session(editor);
+  await editor.evaluate(() => (document.activeElement as HTMLElement).blur());
+  await editor.keyboard.press("Shift+N");
+  expect((await session(editor)).selection).toEqual([points.at(-1)!.id]);
+  await expect(list.getByRole("button").last()).toBeInViewport({ ratio: 1 });
+  const panel = editor.locator(".panel");
+  await panel.evaluate((panel) => panel.scrollTo(0, panel.scrollHeight));
+  await expect(editor.getByRole("slider", { name: "Adherence" })).toBeInViewport({ ratio: 1 });
+});
+
 test("a cloud of points is shaded by depth", async ({ editor }) => {
   const lines: string[] = [];
   // A ball in front of a wall.
