@@ -23,7 +23,8 @@ export interface Bound {
 /** Weights that are still being fitted: what was bound last moves as far as its control points are still there. */
 export function motionOf(bound: Bound, session: Session, space: Space, look: { atRest: boolean; colouring: Colouring }): GpuMotion {
   const { ids, p, handles } = bound;
-  const { settings, points } = session;
+  const { points } = session;
+  const { transform, temperature, adherence } = session.settings;
   const targets = p.slice();
   const turns = new Array<Turn | undefined>(ids.length).fill(undefined);
   if (!look.atRest) {
@@ -37,14 +38,14 @@ export function motionOf(bound: Bound, session: Session, space: Space, look: { a
       }
     }
   }
-  const aimed = handles.aim(targets, { ...settings, ...turnsOf(turns) });
+  const aimed = handles.aim(targets, { transform, temperature, adherence, ...turnsOf(turns) });
   const places = space.allToView(p);
   return {
     p: places,
     q: space.allToView(aimed),
     turned: turnedPoints(places, turns),
-    transform: settings.transform,
-    temperature: settings.temperature,
+    transform,
+    temperature,
     tint: tintOf(bound, session, look.colouring),
   };
 }

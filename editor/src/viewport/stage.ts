@@ -84,7 +84,7 @@ export class Stage {
 
   /** Takes the pane to the half that the pointer has come to, and hands on what came beside it. Not away from what is dragged. */
   #follow(event: PointerEvent | WheelEvent): void {
-    if (event.target === this.pane) return;
+    if (!this.split || event.target === this.pane) return;
     const pressed = event instanceof PointerEvent && (!event.isPrimary || (event.type === "pointermove" && event.buttons !== 0));
     if (!pressed) {
       const { left, width } = this.#host.getBoundingClientRect();
