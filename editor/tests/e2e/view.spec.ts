@@ -1,17 +1,12 @@
 /** What is seen, and what pointers and fingers do on the view. */
 
 import { join } from "node:path";
-import type { Page } from "@playwright/test";
+import type { Browser, Page } from "@playwright/test";
 import { choose, drop, expect, fitted, opened, openSample, pixels, save, screenOf, session, test } from "./fixtures.ts";
 import { samples } from "./tools.ts";
 
 test("a finger selects in a box with the tool for it, and two fingers still move the view", async ({ browser, server }) => {
-  const context = await browser.newContext({ viewport: { width: 1024, height: 768 }, hasTouch: true });
-  const page = await context.newPage();
-  await page.goto(server.url);
-  await page.getByRole("button", { name: "Chair", exact: true }).tap();
-  await opened(page, "chair.obj");
-  await fitted(page);
+  const page = await tablet(browser, server.url);
   const { points } = await session(page);
   const before = await screenOf(page, points[0].target);
   await page.getByRole("button", { name: "A drag selects in a box" }).tap();
@@ -35,7 +30,7 @@ test("a finger selects in a box with the tool for it, and two fingers still move
   const after = await screenOf(page, points[0].target);
   expect(Math.hypot(after.x - before.x, after.y - before.y)).toBeGreaterThan(20);
   expect((await session(page)).selection).toEqual([]);
-  await context.close();
+  await page.context().close();
 });
 
 test("with Ctrl the gizmo moves in steps", async ({ editor }) => {
@@ -179,12 +174,7 @@ test("in the comparison both halves take the pointer", async ({ editor }) => {
 });
 
 test("in the comparison a finger selects in the right half", async ({ browser, server }) => {
-  const context = await browser.newContext({ viewport: { width: 1024, height: 768 }, hasTouch: true });
-  const page = await context.newPage();
-  await page.goto(server.url);
-  await page.getByRole("button", { name: "Chair", exact: true }).tap();
-  await opened(page, "chair.obj");
-  await fitted(page);
+  const page = await tablet(browser, server.url);
   await page.getByRole("button", { name: "Compare" }).tap();
   await expect.poll(() => page.evaluate(() => neuralmls.state().comparisonFit.status), { timeout: 60_000 }).toBe("ready");
   const [point] = (await session(page)).points;
@@ -192,7 +182,7 @@ test("in the comparison a finger selects in the right half", async ({ browser, s
   const { width } = (await page.locator(".pane").boundingBox())!;
   await page.touchscreen.tap(at.x + width, at.y);
   expect((await session(page)).selection).toEqual([point!.id]);
-  await context.close();
+  await page.context().close();
 });
 
 test("names are whole in the list of control points, and the panel's end can be reached in a low window", async ({ editor }) => {
@@ -234,6 +224,17 @@ test("a cloud of points is shaded by depth", async ({ editor }) => {
   expect(dark).toBeGreaterThan(0.005);
   expect(dark).toBeLessThan(0.5);
 });
+
+/** The chair on a screen for fingers. */
+async function tablet(browser: Browser, url: string): Promise<Page> {
+  const context = await browser.newContext({ viewport: { width: 1024, height: 768 }, hasTouch: true });
+  const page = await context.newPage();
+  await page.goto(url);
+  await page.getByRole("button", { name: "Chair", exact: true }).tap();
+  await opened(page, "chair.obj");
+  await fitted(page);
+  return page;
+}
 
 /** A part of the page when nothing moves in it any more. */
 async function seen(page: Page, clip: { x: number; y: number; width: number; height: number }) {
