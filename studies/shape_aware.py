@@ -61,7 +61,7 @@ SETTINGS = [
         for power, hold, held in product((2.0, 2.5, 3.0), (0.8, 1.2, 1.6), (1.0, 2.0, 4.0, 8.0))
         if (hold, held) != (CHOSEN.hold, CHOSEN.held)
     ),
-    *(replace(CHOSEN, around=around) for around in (1.5, 2.0, 4.0)),
+    *(replace(CHOSEN, around=around) for around in (1.5, 3.0, 4.0)),
 ]
 
 

@@ -13,8 +13,8 @@ from neuralmls.weights.surface_links import CELL, Array, Indices, nearest_to, sc
 MOST_SPREAD = 8192  # nodes that `spread` chooses from: every so many-th of more
 MET = 1.5  # times as far as the nearest: the nodes at which a walk meets a control point
 MOST_MET = 64  # such nodes
-AROUND = 3.0  # times: those to which paths lead from it, for one in a body is not on one side of it only
-MOST_AROUND = 1024
+AROUND = 2.0  # times: those to which paths lead from it, for one in a body is not on one side of it only
+MOST_AROUND = 512
 FIRM = 1.0  # what links of a control point conduct, a cell away; on a node ten times as much
 HOLD = 1.2  # of the way to the nearest other control point: how far one holds what is nearest to it
 HELD = 2.0  # how firmly, in the middle, by area over the square of that radius
