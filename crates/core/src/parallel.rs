@@ -46,14 +46,14 @@ pub(crate) fn for_each_block_pair<A: Send, B: Send>(
     work: impl Fn(usize, &mut [A], &mut [B]) + Sync + Send,
 ) {
     #[cfg(feature = "threads")]
-    {
+    if a.len() > size_a {
         use rayon::prelude::*;
-        a.par_chunks_mut(size_a)
+        return a
+            .par_chunks_mut(size_a)
             .zip(b.par_chunks_mut(size_b))
             .enumerate()
             .for_each(|(index, (a, b))| work(index, a, b));
     }
-    #[cfg(not(feature = "threads"))]
     a.chunks_mut(size_a).zip(b.chunks_mut(size_b)).enumerate().for_each(|(index, (a, b))| work(index, a, b));
 }
 

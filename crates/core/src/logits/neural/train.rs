@@ -6,16 +6,20 @@
 
 use std::f64::consts::PI;
 
-use super::adam::{Adam, Rates};
-use super::hidden::{Activations, Hidden};
+use super::activations::Activations;
+use super::adam::{Rates, DUST};
+use super::first::First;
 use super::initialise::Random;
+use super::linear::Linear;
 use super::network::{relu, Layer, Network};
 use super::piecewise::Prepared;
 use super::samples::{sorted, Lessons, Samples};
 use super::{features, gemm};
 use crate::error::{check_number, check_points, Error};
 use crate::frame::Frame;
+use crate::parallel::for_each_block_pair;
 use crate::progress::{report, Progress};
+use crate::simd::{Aligned, WIDTH};
 
 /// A control point owns its place when its cross-entropy there is at most this: 0.9 of the weight.
 const SMALL_LOSS: f64 = 0.105;
@@ -23,6 +27,10 @@ const SMALL_LOSS: f64 = 0.105;
 const GAIN: f32 = 4.0;
 /// Most control points: beyond, every layer of the paper's network is too small for them.
 const MOST_CONTROL_POINTS: usize = 1000;
+/// Neurons of the second layer among which those that fire at first are put together.
+const TOGETHER: usize = 256;
+/// Exponentials a task: fewer are done before another thread has begun.
+const EXPONENTIALS: usize = 1 << 12;
 
 /// How many steps to train.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -188,7 +196,7 @@ fn teach(
     let loss = loop {
         let step = losses.len();
         report(progress, step as f64 / end as f64)?;
-        let Losses { mean, worst } = trainer.forward();
+        let Losses { mean, worst } = trainer.losses();
         let small = matches!(schedule, Schedule::UntilSmall { .. }) && worst <= SMALL_LOSS;
         if small && step < slow_from {
             slow_from = step;
@@ -248,27 +256,23 @@ struct Losses {
     worst: f64,
 }
 
-/// The network with what one step needs. Activations and errors are stored neuron by neuron, neurons x the batch's points.
+/// The network with what one step needs.
 struct Trainer {
     network: Network,
-    hidden: Hidden,
-    /// Of the outer layers' weights and of all biases.
-    weights: [Adam; 2],
-    biases: [Adam; 3],
+    first: First,
+    middle: Linear,
+    last: Linear,
     steps: i32,
     lessons: Lessons,
     /// Of all points, point by point.
     features: Vec<f32>,
-    /// The points of the step.
+    /// The points of the step, and their features.
     batch: Vec<usize>,
     input: Vec<f32>,
-    /// After the first ReLU; also in the layout that the middle layer takes.
-    first: Vec<f32>,
-    first_lanes: Activations,
-    /// After the second ReLU.
-    second: Vec<f32>,
+    /// After the first ReLU, after the second, and the logits.
+    activations: [Activations; 3],
     /// The gradient of the loss with respect to the logits.
-    error: Vec<f32>,
+    error: Activations,
 }
 
 impl Trainer {
@@ -281,102 +285,120 @@ impl Trainer {
         let fires = |neuron: &usize| {
             everywhere[neuron * every.len()..(neuron + 1) * every.len()].iter().any(|value| *value > 0.0)
         };
-        let hidden = Hidden::new(b, (0..a.outputs()).filter(fires).collect());
+        let neurons: Vec<usize> = (0..a.outputs()).filter(fires).collect();
         let batch = lessons.next();
         let m = batch.len();
-        let input = columns(&features, a.inputs(), &batch);
-        let first = activations(a, &input, m);
-        let first_lanes = Activations::of(&first, m, hidden.inputs());
-        let product = hidden.forward(&first_lanes, m);
-        let mut trainer = Trainer {
-            hidden,
-            weights: [a, c].map(|layer| Adam::new(&layer.weight)),
-            biases: [a, b, c].map(|layer| Adam::new(&layer.bias)),
+        let input = of_points(&features, a.inputs(), &batch);
+        let second = activations(b, &activations(a, &columns(&features, a.inputs(), &batch), m), m);
+        let mut rows: Vec<usize> = (0..b.outputs()).collect();
+        // Neurons that do not fire are not updated, eight at a time.
+        rows.chunks_mut(TOGETHER).for_each(|rows| {
+            rows.sort_by_key(|row| second[row * m..(row + 1) * m].iter().all(|value| *value <= 0.0));
+        });
+
+        let first = First::new(a, neurons.clone());
+        let middle = Linear::new(b, neurons, rows.clone(), true);
+        let last = Linear::new(c, rows, (0..c.outputs()).collect(), false);
+        let values = first.forward(&input, m);
+        let second = middle.forward(&values);
+        let logits = last.forward(&second);
+        let activations = [values, second, logits];
+        let error = Activations::zeros(c.outputs(), m);
+        Trainer {
+            network,
+            first,
+            middle,
+            last,
             steps: 0,
             lessons,
             features,
-            error: vec![0.0; c.outputs() * m],
             batch,
             input,
-            first,
-            first_lanes,
-            second: Vec::new(),
-            network,
-        };
-        trainer.activate_second(product);
-        trainer
-    }
-
-    /// Takes the middle layer's product with the first activations, without its biases.
-    fn activate_second(&mut self, mut product: Vec<f32>) {
-        for (row, bias) in product.chunks_exact_mut(self.batch.len()).zip(&self.network.layers[1].bias) {
-            row.iter_mut().for_each(|z| *z = (*z + bias).max(0.0));
+            activations,
+            error,
         }
-        self.second = product;
     }
 
     /// The losses of the network as it is; leaves the gradient with respect to the logits in `error`.
-    fn forward(&mut self) -> Losses {
-        let n = self.batch.len();
-        gemm::forward(&self.network.layers[2], &self.second, n, &mut self.error);
-        let (mut sum, mut worst) = (0.0, 0.0f64);
-        let m = self.network.outputs();
-        let mut column = vec![0.0; m];
-        for (i, point) in self.batch.iter().enumerate() {
-            let labels = &self.lessons.labels[m * point..m * (point + 1)];
-            for (c, logit) in column.iter_mut().enumerate() {
-                *logit = f64::from(self.error[c * n + i]);
+    fn losses(&mut self) -> Losses {
+        let (n, m) = (self.batch.len(), self.network.outputs());
+        let (logits, labels, batch) = (&self.activations[2], &self.lessons.labels, &self.batch);
+        let lanes = m.div_ceil(WIDTH);
+        // Point by point.
+        let (mut errors, mut losses) = (vec![Aligned::ZERO; n * lanes], vec![0.0; n]);
+        let points = (EXPONENTIALS / m).max(1);
+        for_each_block_pair(&mut errors, points * lanes, &mut losses, points, |block, errors, losses| {
+            let mut column = vec![0.0; m];
+            for (k, (errors, loss)) in errors.chunks_exact_mut(lanes).zip(losses).enumerate() {
+                let i = points * block + k;
+                for (values, lanes) in column.chunks_mut(WIDTH).zip(logits.lanes.chunks_exact(n)) {
+                    values.iter_mut().zip(&lanes[i].0).for_each(|(value, logit)| *value = f64::from(*logit));
+                }
+                *loss = cross_entropy(&mut column, &labels[m * batch[i]..m * (batch[i] + 1)]);
+                for (errors, gradient) in errors.iter_mut().zip(column.chunks(WIDTH)) {
+                    for (error, gradient) in errors.0.iter_mut().zip(gradient) {
+                        let gradient = (gradient / n as f64) as f32;
+                        *error = if gradient.abs() < DUST { 0.0 } else { gradient };
+                    }
+                }
             }
-            let largest = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let total: f64 = column.iter().map(|l| (l - largest).exp()).sum();
-            let likely: f64 = column.iter().zip(labels).map(|(logit, label)| logit * f64::from(*label)).sum();
-            let loss = total.ln() + largest - likely;
-            sum += loss;
-            worst = worst.max(loss);
-            for ((c, logit), label) in column.iter().enumerate().zip(labels) {
-                let probability = (logit - largest).exp() / total;
-                self.error[c * n + i] = ((probability - f64::from(*label)) / n as f64) as f32;
-            }
+        });
+        for (i, errors) in errors.chunks_exact(lanes).enumerate() {
+            errors
+                .iter()
+                .zip(self.error.lanes.chunks_exact_mut(n))
+                .for_each(|(error, lanes)| lanes[i] = *error);
         }
-        Losses { mean: sum / n as f64, worst }
+        Losses {
+            mean: losses.iter().sum::<f64>() / n as f64,
+            worst: losses.iter().copied().fold(0.0, f64::max),
+        }
     }
 
-    /// One step of Adam after [`Trainer::forward`], and the activations of the network that it gives.
+    /// One step of Adam after [`Trainer::losses`], and the activations of the network that it gives.
     fn step(&mut self, rate: f64) {
-        let m = self.batch.len();
         self.steps += 1;
         let rates = Rates::new(rate, self.steps);
-        let [a, b, c] = &mut self.network.layers;
         // Errors go back through the layers as they were; then each is updated.
-        let second_error = gemm::backward(c, &self.error, &self.second, m);
-        let mut first_error = vec![0.0; self.first.len()];
-        let found = self.hidden.backward(&second_error, m);
-        for (neuron, errors) in self.hidden.inputs().iter().zip(found.chunks_exact(m)) {
-            for (i, error) in (neuron * m..(neuron + 1) * m).zip(errors) {
-                first_error[i] = if self.first[i] > 0.0 { *error } else { 0.0 };
-            }
-        }
-        self.weights[1].update_weights(&mut c.weight, &self.error, &self.second, m, rates);
-        self.biases[2].update_biases(&mut c.bias, &self.error, m, rates);
-        self.biases[1].update_biases(&mut b.bias, &second_error, m, rates);
-        self.weights[0].update_weights(&mut a.weight, &first_error, &self.input, m, rates);
-        self.biases[0].update_biases(&mut a.bias, &first_error, m, rates);
+        let [first, second, _] = &self.activations;
+        let second_error = self.last.backward(&self.error, second);
+        let first_error = self.middle.backward(&second_error, first);
+        self.first.update(&first_error, &self.input, rates);
 
         self.batch = self.lessons.next();
-        self.input = columns(&self.features, a.inputs(), &self.batch);
-        self.first = activations(a, &self.input, m);
-        let next = Activations::of(&self.first, m, self.hidden.inputs());
-        let product = self.hidden.update_and_forward(&second_error, &self.first_lanes, &next, m, rates);
-        self.first_lanes = next;
-        self.activate_second(product);
+        self.input = of_points(&self.features, self.network.layers[0].inputs(), &self.batch);
+        let next_first = self.first.forward(&self.input, self.batch.len());
+        let next_second = self.middle.update_and_forward(&second_error, first, &next_first, rates);
+        let logits = self.last.update_and_forward(&self.error, second, &next_second, rates);
+        self.activations = [next_first, next_second, logits];
     }
 
     fn finish(mut self) -> Network {
         // Laid out, if at all, from the parameters that it had.
         self.network.prepared = Prepared::default();
-        self.hidden.store(&mut self.network.layers[1]);
+        let [a, b, c] = &mut self.network.layers;
+        self.first.store(a);
+        self.middle.store(b);
+        self.last.store(c);
         self.network
     }
+}
+
+/// The cross-entropy of logits, which become its gradient with respect to them.
+fn cross_entropy(logits: &mut [f64], labels: &[f32]) -> f64 {
+    let largest = logits.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let likely: f64 = logits.iter().zip(labels).map(|(logit, label)| logit * f64::from(*label)).sum();
+    logits.iter_mut().for_each(|logit| *logit = (*logit - largest).exp());
+    let total: f64 = logits.iter().sum();
+    for (exponential, label) in logits.iter_mut().zip(labels) {
+        *exponential = *exponential / total - f64::from(*label);
+    }
+    total.ln() + largest - likely
+}
+
+/// The features of some points, `count` each, point by point.
+fn of_points(features: &[f32], count: usize, points: &[usize]) -> Vec<f32> {
+    points.iter().flat_map(|point| &features[point * count..(point + 1) * count]).copied().collect()
 }
 
 /// The features of some points, `count` each, as columns: `count` x the points.
