@@ -113,13 +113,18 @@ impl Linear {
         let columns = (WORK / (self.rows.len() * WIDTH * m)).max(COLUMNS);
         let with_error: Vec<bool> = (0..self.awake.len()).map(|block| has_error(error, block)).collect();
         for_each_block(&mut sums.lanes, columns * m, |task, sums| {
-            let first = columns * task;
-            transposed_product(self.simd, &self.state, self.lanes, first, &with_error, &error.lanes, m, sums);
-            for (sums, input) in sums.iter_mut().zip(&input.lanes[first * m..]) {
-                for (sum, input) in sums.0.iter_mut().zip(&input.0) {
-                    *sum = if *input > 0.0 { *sum } else { 0.0 };
-                }
-            }
+            let (first, input) = (columns * task, &input.lanes[columns * task * m..]);
+            transposed_product(
+                self.simd,
+                &self.state,
+                self.lanes,
+                first,
+                &with_error,
+                &error.lanes,
+                input,
+                m,
+                sums,
+            );
         });
         // The bias's input is no neuron.
         sums.row_mut(self.inputs.len(), |sum| *sum = 0.0);

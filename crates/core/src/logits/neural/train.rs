@@ -17,7 +17,7 @@ use super::samples::{sorted, Lessons, Samples};
 use super::{features, gemm};
 use crate::error::{check_number, check_points, Error};
 use crate::frame::Frame;
-use crate::parallel::for_each_block_pair;
+use crate::parallel::{for_each_block_pair, on_a_working_thread};
 use crate::progress::{report, Progress};
 use crate::simd::{Aligned, WIDTH};
 
@@ -189,31 +189,33 @@ fn teach(
     if !(1..=1_000_000).contains(&most) {
         return Err(Error::argument("steps", format!("expected 1 to 1000000, found {most}")));
     }
-    let mut trainer = Trainer::new(network, lessons);
-    let mut losses = Vec::new();
-    let mut slow_from = most * 4 / 5;
-    let mut end = most;
-    let loss = loop {
-        let step = losses.len();
-        report(progress, step as f64 / end as f64)?;
-        let Losses { mean, worst } = trainer.losses();
-        let small = matches!(schedule, Schedule::UntilSmall { .. }) && worst <= SMALL_LOSS;
-        if small && step < slow_from {
-            slow_from = step;
-            end = step + step.div_ceil(4);
-        }
-        if step == end || one {
-            break mean;
-        }
-        losses.push(mean);
-        trainer.step(match schedule {
-            Schedule::Cosine(_) => 0.5 * rate * (1.0 + (PI * step as f64 / end as f64).cos()),
-            _ if step < slow_from => rate,
-            _ => 0.1 * rate,
-        });
-    };
-    report(progress, 1.0)?;
-    Ok(Fit { network: trainer.finish(), losses, loss })
+    on_a_working_thread(progress, |progress| {
+        let mut trainer = Trainer::new(network, lessons);
+        let mut losses = Vec::new();
+        let mut slow_from = most * 4 / 5;
+        let mut end = most;
+        let loss = loop {
+            let step = losses.len();
+            report(progress, step as f64 / end as f64)?;
+            let Losses { mean, worst } = trainer.losses();
+            let small = matches!(schedule, Schedule::UntilSmall { .. }) && worst <= SMALL_LOSS;
+            if small && step < slow_from {
+                slow_from = step;
+                end = step + step.div_ceil(4);
+            }
+            if step == end || one {
+                break mean;
+            }
+            losses.push(mean);
+            trainer.step(match schedule {
+                Schedule::Cosine(_) => 0.5 * rate * (1.0 + (PI * step as f64 / end as f64).cos()),
+                _ if step < slow_from => rate,
+                _ => 0.1 * rate,
+            });
+        };
+        report(progress, 1.0)?;
+        Ok(Fit { network: trainer.finish(), losses, loss })
+    })
 }
 
 /// Checks that there are 1 to 1,000 control points, finite and apart; gives their number.

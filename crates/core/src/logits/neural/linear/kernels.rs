@@ -102,9 +102,10 @@ fn product_of<L: Lanes, const POINTS: usize>(
 }
 
 multiversion! {
-    /// `sums = W^T error` for some lanes of columns from `first` on, over the blocks of rows that have an error.
+    /// `sums = W^T error` for some lanes of columns from `first` on, over the blocks of rows that have an error, where `input` of
+    /// those columns is above 0.
     pub(super) fn transposed_product(
-        state: &[Aligned], lanes: usize, first: usize, with_error: &[bool], error: &[Aligned], m: usize, sums: &mut [Aligned],
+        state: &[Aligned], lanes: usize, first: usize, with_error: &[bool], error: &[Aligned], input: &[Aligned], m: usize, sums: &mut [Aligned],
     ) = transposed_product_body
 }
 
@@ -115,6 +116,7 @@ fn transposed_product_body<L: Lanes>(
     first: usize,
     with_error: &[bool],
     error: &[Aligned],
+    input: &[Aligned],
     m: usize,
     sums: &mut [Aligned],
 ) {
@@ -142,5 +144,9 @@ fn transposed_product_body<L: Lanes>(
                 }
             }
         }
+    }
+    for (sum, input) in sums.iter_mut().zip(input) {
+        let zero = L::splat(0.0);
+        *sum = Aligned(L::select(zero.less(L::load(&input.0)), L::load(&sum.0), zero).store());
     }
 }
