@@ -10,7 +10,7 @@
 mod lanes;
 pub(crate) mod loops;
 
-pub(crate) use lanes::{Aligned, Lanes, Portable, WIDTH};
+pub(crate) use lanes::{prefetch, Aligned, Lanes, Portable, WIDTH};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lanes::{Avx2, Avx512};
 

@@ -1,7 +1,7 @@
 //! The loops of a linear layer in training, over lanes of columns.
 
 use super::{Rates, GROUP, ROWS};
-use crate::simd::{multiversion, Aligned, Lanes, WIDTH};
+use crate::simd::{multiversion, prefetch, Aligned, Lanes, WIDTH};
 
 /// Points that share the loads of the weights in a product with the transposed weights: their sums stay in the nearest cache.
 const POINTS: usize = 64;
@@ -25,10 +25,7 @@ fn update_body<L: Lanes>(
 ) {
     let rows = state.len() / (3 * lanes);
     let (weights, moments) = state.split_at_mut(rows * lanes);
-    let weights = weights.chunks_exact_mut(rows);
-    for ((weights, moments), input) in
-        weights.zip(moments.chunks_exact_mut(2 * rows)).zip(input.chunks_exact(m))
-    {
+    for (c, input) in input.chunks_exact(m).take(lanes).enumerate() {
         for &block in blocks {
             let half = block % (WIDTH / ROWS) * ROWS;
             let error = &error[block / (WIDTH / ROWS) * m..][..m];
@@ -40,12 +37,23 @@ fn update_body<L: Lanes>(
                     gradient[r] = L::splat(e[r]).mul_add(x, gradient[r]);
                 }
             }
-            let weights = &mut weights[ROWS * block..][..ROWS];
-            let (first, second) = moments[2 * ROWS * block..][..2 * ROWS].split_at_mut(ROWS);
+            let (weights, more) = weights[c * rows + ROWS * block..].split_at_mut(ROWS);
+            let (moments, further) = moments[2 * (c * rows + ROWS * block)..].split_at_mut(2 * ROWS);
+            prefetch_next(more, rows - ROWS, ROWS);
+            prefetch_next(further, 2 * (rows - ROWS), 2 * ROWS);
+            let (first, second) = moments.split_at_mut(ROWS);
             for r in 0..ROWS {
                 rates.descend(&mut weights[r].0, &mut first[r].0, &mut second[r].0, gradient[r]);
             }
         }
+    }
+}
+
+/// Of the numbers behind some, what the next lanes of columns need.
+#[inline(always)]
+fn prefetch_next(behind: &[Aligned], skip: usize, count: usize) {
+    if let Some(next) = behind.get(skip..skip + count) {
+        prefetch(next);
     }
 }
 
@@ -121,18 +129,25 @@ fn transposed_product_body<L: Lanes>(
     sums: &mut [Aligned],
 ) {
     for points in (0..m).step_by(POINTS).map(|start| start..(start + POINTS).min(m)) {
+        let whole = state;
         for (group, state) in state.chunks(GROUP * 3 * lanes).enumerate() {
             let rows = state.len() / (3 * lanes);
             let with_error = with_error[GROUP / ROWS * group..].iter().take(rows / ROWS).enumerate();
             let blocks = with_error.filter_map(|(block, with)| with.then_some(block));
-            for (weights, sums) in state[first * rows..].chunks_exact(rows).zip(sums.chunks_exact_mut(m)) {
+            let count = sums.len() / m;
+            for (c, sums) in sums.chunks_exact_mut(m).enumerate() {
                 let sums = &mut sums[points.clone()];
+                let weights = &state[(first + c) * rows..][..rows];
+                // The next ones, of the next group after the last.
+                let next = if c + 1 < count { (first + c + 1) * rows } else { state.len() + first * rows };
+                let next = whole.get(GROUP * 3 * lanes * group + next..).unwrap_or_default();
                 for block in blocks.clone() {
                     let half = block % (WIDTH / ROWS) * ROWS;
                     let error =
                         &error[(GROUP / WIDTH * group + block / (WIDTH / ROWS)) * m..][points.clone()];
                     let weights: &[Aligned; ROWS] = weights[ROWS * block..].first_chunk().expect("a block");
                     let w: [L; ROWS] = std::array::from_fn(|r| L::load(&weights[r].0));
+                    prefetch_next(next, ROWS * block, ROWS);
                     for (sum, e) in sums.iter_mut().zip(error) {
                         let e: &[f32; ROWS] = e.0[half..].first_chunk().expect("half a lane");
                         let mut total = L::load(&sum.0);
