@@ -110,10 +110,10 @@ fn update_body<L: Lanes>(
             for (i, error) in error.iter().enumerate() {
                 let error = L::load(&error.0);
                 let x = &input[i * (count - 1)..(i + 1) * (count - 1)];
-                for k in 0..TILE {
+                for (k, gradient) in gradient.iter_mut().enumerate() {
                     // The bias is the weight of an input that is always 1.
                     let x = x.get(TILE * tile + k).copied().unwrap_or(1.0);
-                    gradient[k] = L::splat(x).mul_add(error, gradient[k]);
+                    *gradient = L::splat(x).mul_add(error, *gradient);
                 }
             }
             for ([weights, first, second], gradient) in state.iter_mut().zip(gradient) {

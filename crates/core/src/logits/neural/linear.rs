@@ -90,7 +90,7 @@ impl Linear {
         for_each_block(&mut z.lanes, groups * GROUP / WIDTH * m, |task, z| {
             let state = self.state[size * groups * task..].chunks(size);
             for (state, z) in state.zip(z.chunks_mut(GROUP / WIDTH * m)) {
-                self.group_product(state, input, z);
+                group_product(self.simd, state, self.lanes, input, self.rectified, z);
             }
         });
         z.push_one(self.rows.len());
@@ -102,10 +102,6 @@ impl Linear {
         (WORK / (GROUP * self.lanes * WIDTH * (m + ROWS))).max(1)
     }
 
-    fn group_product(&self, state: &[Aligned], input: &Activations, z: &mut [Aligned]) {
-        group_product(self.simd, state, self.lanes, input, self.rectified, z);
-    }
-
     /// `W^T error`, the gradient with respect to the inputs, where `input` is above 0.
     pub(super) fn backward(&self, error: &Activations, input: &Activations) -> Activations {
         let m = error.points;
@@ -114,17 +110,7 @@ impl Linear {
         let with_error: Vec<bool> = (0..self.awake.len()).map(|block| has_error(error, block)).collect();
         for_each_block(&mut sums.lanes, columns * m, |task, sums| {
             let (first, input) = (columns * task, &input.lanes[columns * task * m..]);
-            transposed_product(
-                self.simd,
-                &self.state,
-                self.lanes,
-                first,
-                &with_error,
-                &error.lanes,
-                input,
-                m,
-                sums,
-            );
+            transposed_product(self.simd, &self.state, self.lanes, first, &with_error, error, input, sums);
         });
         // The bias's input is no neuron.
         sums.row_mut(self.inputs.len(), |sum| *sum = 0.0);
@@ -176,6 +162,7 @@ fn has_error(error: &Activations, block: usize) -> bool {
     lanes.iter().any(|lanes| lanes.0[half..half + ROWS].iter().any(|e| *e != 0.0))
 }
 
+/// The outputs of a group of rows.
 fn group_product(
     simd: Simd,
     state: &[Aligned],

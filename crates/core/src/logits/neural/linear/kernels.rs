@@ -1,6 +1,6 @@
 //! The loops of a linear layer in training, over lanes of columns.
 
-use super::{Rates, GROUP, ROWS};
+use super::{Activations, Rates, GROUP, ROWS};
 use crate::simd::{multiversion, prefetch, Aligned, Lanes, WIDTH};
 
 /// Points that share the loads of the weights in a product with the transposed weights: their sums stay in the nearest cache.
@@ -99,10 +99,10 @@ fn product_of<L: Lanes, const POINTS: usize>(
                     }
                 }
             }
-            for k in 0..TILE {
+            for (k, sums) in sums.iter().enumerate() {
                 let (at, lane) = ((r + k) / WIDTH * m, (r + k) % WIDTH);
-                for i in 0..POINTS {
-                    z[at + points[i]].0[lane] = sums[k][i].total();
+                for (point, sum) in points.iter().zip(sums) {
+                    z[at + point].0[lane] = sum.total();
                 }
             }
         }
@@ -113,7 +113,7 @@ multiversion! {
     /// `sums = W^T error` for some lanes of columns from `first` on, over the blocks of rows that have an error, where `input` of
     /// those columns is above 0.
     pub(super) fn transposed_product(
-        state: &[Aligned], lanes: usize, first: usize, with_error: &[bool], error: &[Aligned], input: &[Aligned], m: usize, sums: &mut [Aligned],
+        state: &[Aligned], lanes: usize, first: usize, with_error: &[bool], error: &Activations, input: &[Aligned], sums: &mut [Aligned],
     ) = transposed_product_body
 }
 
@@ -123,28 +123,27 @@ fn transposed_product_body<L: Lanes>(
     lanes: usize,
     first: usize,
     with_error: &[bool],
-    error: &[Aligned],
+    error: &Activations,
     input: &[Aligned],
-    m: usize,
     sums: &mut [Aligned],
 ) {
+    let m = error.points;
     for points in (0..m).step_by(POINTS).map(|start| start..(start + POINTS).min(m)) {
-        let whole = state;
-        for (group, state) in state.chunks(GROUP * 3 * lanes).enumerate() {
-            let rows = state.len() / (3 * lanes);
+        for (group, of_group) in state.chunks(GROUP * 3 * lanes).enumerate() {
+            let rows = of_group.len() / (3 * lanes);
             let with_error = with_error[GROUP / ROWS * group..].iter().take(rows / ROWS).enumerate();
             let blocks = with_error.filter_map(|(block, with)| with.then_some(block));
             let count = sums.len() / m;
             for (c, sums) in sums.chunks_exact_mut(m).enumerate() {
                 let sums = &mut sums[points.clone()];
-                let weights = &state[(first + c) * rows..][..rows];
+                let weights = &of_group[(first + c) * rows..][..rows];
                 // The next ones, of the next group after the last.
-                let next = if c + 1 < count { (first + c + 1) * rows } else { state.len() + first * rows };
-                let next = whole.get(GROUP * 3 * lanes * group + next..).unwrap_or_default();
+                let next = if c + 1 < count { (first + c + 1) * rows } else { of_group.len() + first * rows };
+                let next = state.get(GROUP * 3 * lanes * group + next..).unwrap_or_default();
                 for block in blocks.clone() {
                     let half = block % (WIDTH / ROWS) * ROWS;
                     let error =
-                        &error[(GROUP / WIDTH * group + block / (WIDTH / ROWS)) * m..][points.clone()];
+                        &error.lanes[(GROUP / WIDTH * group + block / (WIDTH / ROWS)) * m..][points.clone()];
                     let weights: &[Aligned; ROWS] = weights[ROWS * block..].first_chunk().expect("a block");
                     let w: [L; ROWS] = std::array::from_fn(|r| L::load(&weights[r].0));
                     prefetch_next(next, ROWS * block, ROWS);
