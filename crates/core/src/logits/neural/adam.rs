@@ -54,7 +54,7 @@ impl Rates {
         let v = v.max(L::splat(LEAST_SQUARE));
         // A quotient by Newton's method from an estimate: an exact one takes longer than all the rest.
         let divisor = v.sqrt().mul_add(L::splat(self.correction), L::splat(EPSILON));
-        let parameter = L::splat(self.rate).mul(m).negative_mul_add(divisor.inverse(), L::load(parameters));
+        let parameter = L::splat(self.rate).mul(m).mul_sub_from(divisor.inverse(), L::load(parameters));
         (*first, *second, *parameters) = (m.store(), v.store(), parameter.store());
     }
 }
