@@ -22,6 +22,27 @@ pub(crate) fn threads() -> usize {
     return 1;
 }
 
+/// Calls `work(progress)` on a thread that shares the loops' work, where the calling one does not: one that starts many short loops
+/// then waits for none of them to be taken up. The calling thread reports what `progress` is told.
+pub(crate) fn on_a_working_thread<R: Send>(
+    progress: &mut Progress<'_>,
+    work: impl FnOnce(&mut Progress<'_>) -> Result<R, Error> + Send,
+) -> Result<R, Error> {
+    #[cfg(feature = "threads")]
+    if rayon::current_thread_index().is_none() {
+        let (sender, fractions) = std::sync::mpsc::channel();
+        let mut result = Err(Error::Cancelled);
+        let told = rayon::in_place_scope(|scope| {
+            let result = &mut result;
+            // Once the caller wants to stop there is no receiver.
+            scope.spawn(move |_| *result = work(&mut |fraction| sender.send(fraction).is_ok()));
+            fractions.into_iter().try_for_each(|fraction| report(progress, fraction))
+        });
+        return told.and(result);
+    }
+    work(progress)
+}
+
 /// Calls `work(index, block)` for each block of `size` elements of `out` (the last may be shorter).
 pub(crate) fn for_each_block<T: Send>(
     out: &mut [T],
@@ -46,14 +67,14 @@ pub(crate) fn for_each_block_pair<A: Send, B: Send>(
     work: impl Fn(usize, &mut [A], &mut [B]) + Sync + Send,
 ) {
     #[cfg(feature = "threads")]
-    {
+    if a.len() > size_a {
         use rayon::prelude::*;
-        a.par_chunks_mut(size_a)
+        return a
+            .par_chunks_mut(size_a)
             .zip(b.par_chunks_mut(size_b))
             .enumerate()
             .for_each(|(index, (a, b))| work(index, a, b));
     }
-    #[cfg(not(feature = "threads"))]
     a.chunks_mut(size_a).zip(b.chunks_mut(size_b)).enumerate().for_each(|(index, (a, b))| work(index, a, b));
 }
 

@@ -61,21 +61,3 @@ pub(super) fn forward(layer: &Layer, input: &[f32], m: usize, out: &mut [f32]) {
         multiply(rows, k, m, weight, View { data: input, row: m, column: 1 }, 1.0, out);
     });
 }
-
-/// The gradient with respect to the layer's input, `W^T error`, where that input (an output of ReLU) is above 0.
-pub(super) fn backward(layer: &Layer, error: &[f32], input: &[f32], m: usize) -> Vec<f32> {
-    let k = layer.inputs();
-    let mut out = vec![0.0; k * m];
-    let size = rows(layer.outputs() * m);
-    for_each_block(&mut out, size * m, |block, out| {
-        let (first, rows) = (size * block, out.len() / m);
-        let transposed = View { data: &layer.weight[first..], row: 1, column: k };
-        multiply(rows, layer.outputs(), m, transposed, View { data: error, row: m, column: 1 }, 0.0, out);
-        for (gradient, input) in out.iter_mut().zip(&input[m * first..]) {
-            if *input <= 0.0 {
-                *gradient = 0.0;
-            }
-        }
-    });
-    out
-}

@@ -3,12 +3,14 @@
 //! MLP `d -> width -> width -> m`, ReLU, trained full-batch with Adam to give control point i the class i. Its outputs are the
 //! logits. Shechter et al. 2022, section 3.
 
+mod activations;
 mod adam;
 mod dense;
 mod features;
+mod first;
 mod gemm;
-mod hidden;
 mod initialise;
+mod linear;
 mod network;
 mod piecewise;
 mod samples;

@@ -6,16 +6,17 @@
 
 use std::f64::consts::PI;
 
-use super::adam::{Adam, Rates};
-use super::hidden::{Activations, Hidden};
+use super::features;
 use super::initialise::Random;
-use super::network::{relu, Layer, Network};
-use super::piecewise::Prepared;
+use super::network::{Layer, Network};
 use super::samples::{sorted, Lessons, Samples};
-use super::{features, gemm};
 use crate::error::{check_number, check_points, Error};
 use crate::frame::Frame;
+use crate::parallel::on_a_working_thread;
 use crate::progress::{report, Progress};
+
+mod trainer;
+use trainer::{Losses, Trainer};
 
 /// A control point owns its place when its cross-entropy there is at most this: 0.9 of the weight.
 const SMALL_LOSS: f64 = 0.105;
@@ -181,31 +182,33 @@ fn teach(
     if !(1..=1_000_000).contains(&most) {
         return Err(Error::argument("steps", format!("expected 1 to 1000000, found {most}")));
     }
-    let mut trainer = Trainer::new(network, lessons);
-    let mut losses = Vec::new();
-    let mut slow_from = most * 4 / 5;
-    let mut end = most;
-    let loss = loop {
-        let step = losses.len();
-        report(progress, step as f64 / end as f64)?;
-        let Losses { mean, worst } = trainer.forward();
-        let small = matches!(schedule, Schedule::UntilSmall { .. }) && worst <= SMALL_LOSS;
-        if small && step < slow_from {
-            slow_from = step;
-            end = step + step.div_ceil(4);
-        }
-        if step == end || one {
-            break mean;
-        }
-        losses.push(mean);
-        trainer.step(match schedule {
-            Schedule::Cosine(_) => 0.5 * rate * (1.0 + (PI * step as f64 / end as f64).cos()),
-            _ if step < slow_from => rate,
-            _ => 0.1 * rate,
-        });
-    };
-    report(progress, 1.0)?;
-    Ok(Fit { network: trainer.finish(), losses, loss })
+    on_a_working_thread(progress, |progress| {
+        let mut trainer = Trainer::new(network, lessons);
+        let mut losses = Vec::new();
+        let mut slow_from = most * 4 / 5;
+        let mut end = most;
+        let loss = loop {
+            let step = losses.len();
+            report(progress, step as f64 / end as f64)?;
+            let Losses { mean, worst } = trainer.losses();
+            let small = matches!(schedule, Schedule::UntilSmall { .. }) && worst <= SMALL_LOSS;
+            if small && step < slow_from {
+                slow_from = step;
+                end = step + step.div_ceil(4);
+            }
+            if step == end || one {
+                break mean;
+            }
+            losses.push(mean);
+            trainer.step(match schedule {
+                Schedule::Cosine(_) => 0.5 * rate * (1.0 + (PI * step as f64 / end as f64).cos()),
+                _ if step < slow_from => rate,
+                _ => 0.1 * rate,
+            });
+        };
+        report(progress, 1.0)?;
+        Ok(Fit { network: trainer.finish(), losses, loss })
+    })
 }
 
 /// Checks that there are 1 to 1,000 control points, finite and apart; gives their number.
@@ -241,155 +244,6 @@ fn in_order(layer: &Layer, order: &[usize]) -> Layer {
         result.bias[to] = layer.bias[from];
     }
     result
-}
-
-struct Losses {
-    mean: f64,
-    worst: f64,
-}
-
-/// The network with what one step needs. Activations and errors are stored neuron by neuron, neurons x the batch's points.
-struct Trainer {
-    network: Network,
-    hidden: Hidden,
-    /// Of the outer layers' weights and of all biases.
-    weights: [Adam; 2],
-    biases: [Adam; 3],
-    steps: i32,
-    lessons: Lessons,
-    /// Of all points, point by point.
-    features: Vec<f32>,
-    /// The points of the step.
-    batch: Vec<usize>,
-    input: Vec<f32>,
-    /// After the first ReLU; also in the layout that the middle layer takes.
-    first: Vec<f32>,
-    first_lanes: Activations,
-    /// After the second ReLU.
-    second: Vec<f32>,
-    /// The gradient of the loss with respect to the logits.
-    error: Vec<f32>,
-}
-
-impl Trainer {
-    fn new(network: Network, mut lessons: Lessons) -> Trainer {
-        let features = network.features(&lessons.points);
-        let [a, b, c] = network.layers();
-        let every: Vec<usize> = (0..features.len() / a.inputs()).collect();
-        let everywhere = activations(a, &columns(&features, a.inputs(), &every), every.len());
-        // A neuron that fires for no point has no gradient, and so never will.
-        let fires = |neuron: &usize| {
-            everywhere[neuron * every.len()..(neuron + 1) * every.len()].iter().any(|value| *value > 0.0)
-        };
-        let hidden = Hidden::new(b, (0..a.outputs()).filter(fires).collect());
-        let batch = lessons.next();
-        let m = batch.len();
-        let input = columns(&features, a.inputs(), &batch);
-        let first = activations(a, &input, m);
-        let first_lanes = Activations::of(&first, m, hidden.inputs());
-        let product = hidden.forward(&first_lanes, m);
-        let mut trainer = Trainer {
-            hidden,
-            weights: [a, c].map(|layer| Adam::new(&layer.weight)),
-            biases: [a, b, c].map(|layer| Adam::new(&layer.bias)),
-            steps: 0,
-            lessons,
-            features,
-            error: vec![0.0; c.outputs() * m],
-            batch,
-            input,
-            first,
-            first_lanes,
-            second: Vec::new(),
-            network,
-        };
-        trainer.activate_second(product);
-        trainer
-    }
-
-    /// Takes the middle layer's product with the first activations, without its biases.
-    fn activate_second(&mut self, mut product: Vec<f32>) {
-        for (row, bias) in product.chunks_exact_mut(self.batch.len()).zip(&self.network.layers[1].bias) {
-            row.iter_mut().for_each(|z| *z = (*z + bias).max(0.0));
-        }
-        self.second = product;
-    }
-
-    /// The losses of the network as it is; leaves the gradient with respect to the logits in `error`.
-    fn forward(&mut self) -> Losses {
-        let n = self.batch.len();
-        gemm::forward(&self.network.layers[2], &self.second, n, &mut self.error);
-        let (mut sum, mut worst) = (0.0, 0.0f64);
-        let m = self.network.outputs();
-        let mut column = vec![0.0; m];
-        for (i, point) in self.batch.iter().enumerate() {
-            let labels = &self.lessons.labels[m * point..m * (point + 1)];
-            for (c, logit) in column.iter_mut().enumerate() {
-                *logit = f64::from(self.error[c * n + i]);
-            }
-            let largest = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let total: f64 = column.iter().map(|l| (l - largest).exp()).sum();
-            let likely: f64 = column.iter().zip(labels).map(|(logit, label)| logit * f64::from(*label)).sum();
-            let loss = total.ln() + largest - likely;
-            sum += loss;
-            worst = worst.max(loss);
-            for ((c, logit), label) in column.iter().enumerate().zip(labels) {
-                let probability = (logit - largest).exp() / total;
-                self.error[c * n + i] = ((probability - f64::from(*label)) / n as f64) as f32;
-            }
-        }
-        Losses { mean: sum / n as f64, worst }
-    }
-
-    /// One step of Adam after [`Trainer::forward`], and the activations of the network that it gives.
-    fn step(&mut self, rate: f64) {
-        let m = self.batch.len();
-        self.steps += 1;
-        let rates = Rates::new(rate, self.steps);
-        let [a, b, c] = &mut self.network.layers;
-        // Errors go back through the layers as they were; then each is updated.
-        let second_error = gemm::backward(c, &self.error, &self.second, m);
-        let mut first_error = vec![0.0; self.first.len()];
-        let found = self.hidden.backward(&second_error, m);
-        for (neuron, errors) in self.hidden.inputs().iter().zip(found.chunks_exact(m)) {
-            for (i, error) in (neuron * m..(neuron + 1) * m).zip(errors) {
-                first_error[i] = if self.first[i] > 0.0 { *error } else { 0.0 };
-            }
-        }
-        self.weights[1].update_weights(&mut c.weight, &self.error, &self.second, m, rates);
-        self.biases[2].update_biases(&mut c.bias, &self.error, m, rates);
-        self.biases[1].update_biases(&mut b.bias, &second_error, m, rates);
-        self.weights[0].update_weights(&mut a.weight, &first_error, &self.input, m, rates);
-        self.biases[0].update_biases(&mut a.bias, &first_error, m, rates);
-
-        self.batch = self.lessons.next();
-        self.input = columns(&self.features, a.inputs(), &self.batch);
-        self.first = activations(a, &self.input, m);
-        let next = Activations::of(&self.first, m, self.hidden.inputs());
-        let product = self.hidden.update_and_forward(&second_error, &self.first_lanes, &next, m, rates);
-        self.first_lanes = next;
-        self.activate_second(product);
-    }
-
-    fn finish(mut self) -> Network {
-        // Laid out, if at all, from the parameters that it had.
-        self.network.prepared = Prepared::default();
-        self.hidden.store(&mut self.network.layers[1]);
-        self.network
-    }
-}
-
-/// The features of some points, `count` each, as columns: `count` x the points.
-fn columns(features: &[f32], count: usize, points: &[usize]) -> Vec<f32> {
-    (0..count).flat_map(|k| points.iter().map(move |point| features[point * count + k])).collect()
-}
-
-/// `relu(W input + b)`, outputs x m.
-fn activations(layer: &Layer, input: &[f32], m: usize) -> Vec<f32> {
-    let mut values = vec![0.0; layer.outputs() * m];
-    gemm::forward(layer, input, m, &mut values);
-    relu(&mut values);
-    values
 }
 
 #[cfg(test)]
