@@ -12,12 +12,68 @@ use super::ANCHOR_WEIGHT;
 
 /// The rule: the rotation that `moment` (C, at any scale) asks for, with the anchor `g` where it leaves something open.
 pub(super) fn anchored<const D: usize>(moment: &Matrix<D>, g: &Matrix<D>) -> Matrix<D> {
+    best_rotation(&target(moment, g))
+}
+
+/// `C / |C| + 1e-9 G^T`.
+fn target<const D: usize>(moment: &Matrix<D>, g: &Matrix<D>) -> Matrix<D> {
     let size = norm(moment);
     let inverse = if size > 0.0 { 1.0 / size } else { 0.0 };
     let inverse = if inverse.is_finite() { inverse } else { 0.0 };
-    let target =
-        std::array::from_fn(|r| std::array::from_fn(|c| moment[r][c] * inverse + ANCHOR_WEIGHT * g[c][r]));
-    best_rotation(&target)
+    std::array::from_fn(|r| std::array::from_fn(|c| moment[r][c] * inverse + ANCHOR_WEIGHT * g[c][r]))
+}
+
+/// The mean of the rotations that fit `moment` almost as well as the best one: as [`anchored`], where the best one fits so much better
+/// than any that is turned against it, by `gap`, that it is alone; no rotation, and shorter, where it is not.
+///
+/// `sum f_i R(u_i) / sum f_i`, with `u_i` the eigenvectors of Horn's matrix and `f_i = max(0, 1 - (l_1 - l_i) / gap)`, `l_i` their eigenvalues, the
+/// `tr(R C)` of each. Unlike the best rotation it has no jumps: it changes by at most about `1 / gap` times what C changes.
+pub(super) fn mean<const D: usize>(moment: &Matrix<D>, g: &Matrix<D>, gap: f64) -> Matrix<D> {
+    let size = norm(moment);
+    let target = target(moment, g);
+    let gap = if size > 0.0 { gap / size } else { 0.0 };
+    let mut r = [[0.0; D]; D];
+    match D {
+        1 => r[0][0] = 1.0,
+        2 => {
+            let best = best_rotation(&target);
+            let (cos, sin) = (target[0][0] + target[1][1], target[0][1] - target[1][0]);
+            // Of the best and that which is turned by half a turn against it, which cancels it.
+            let other = (1.0 - 2.0 * cos.hypot(sin) / gap).max(0.0);
+            r = best.map(|row| row.map(|e| e * (1.0 - other) / (1.0 + other)));
+        }
+        _ => {
+            let (values, vectors) = eigen(horn(&target));
+            let best = greatest(&values);
+            let mut sum = 0.0;
+            for (i, value) in values.iter().enumerate() {
+                // Where the gap is 0 only the best counts.
+                let share = if i == best { 1.0 } else { (1.0 - (values[best] - value) / gap).max(0.0) };
+                if share > 0.0 {
+                    let one = of_quaternion(&unit(&vectors, i));
+                    for (row, one) in r.iter_mut().zip(one) {
+                        row.iter_mut().zip(one).for_each(|(sum, e)| *sum += share * e);
+                    }
+                    sum += share;
+                }
+            }
+            r.iter_mut().flatten().for_each(|e| *e /= sum);
+        }
+    }
+    r
+}
+
+/// By how much less than the best rotation any fits `moment` that is turned against it (half a turn, about the worst axis).
+pub(super) fn gap<const D: usize>(moment: &Matrix<D>) -> f64 {
+    match D {
+        1 => 0.0,
+        2 => 2.0 * (moment[0][0] + moment[1][1]).hypot(moment[0][1] - moment[1][0]),
+        _ => {
+            let (mut values, _) = eigen(horn(moment));
+            values.sort_by(f64::total_cmp);
+            values[3] - values[2]
+        }
+    }
 }
 
 /// The rotation `R` that maximises `tr(R C)`.
@@ -32,7 +88,8 @@ pub fn best_rotation<const D: usize>(c: &Matrix<D>) -> Matrix<D> {
             (r[0][0], r[0][1], r[1][0], r[1][1]) = (cos, -sin, sin, cos);
         }
         _ => {
-            let full = of_quaternion(&largest_eigenvector(horn(c)));
+            let (values, vectors) = eigen(horn(c));
+            let full = of_quaternion(&unit(&vectors, greatest(&values)));
             for (row, full) in r.iter_mut().zip(full) {
                 row.copy_from_slice(&full[..D]);
             }
@@ -53,8 +110,8 @@ fn horn<const D: usize>(s: &Matrix<D>) -> [[f64; 4]; 4] {
     ]
 }
 
-/// Cyclic Jacobi: plane rotations that zero the off-diagonal, accumulated.
-fn largest_eigenvector(mut n: [[f64; 4]; 4]) -> [f64; 4] {
+/// Cyclic Jacobi: plane rotations that zero the off-diagonal, accumulated. The eigenvalues, and the eigenvectors in columns.
+fn eigen(mut n: [[f64; 4]; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
     /// Jacobi converges quadratically: a 4 x 4 matrix is done after 4 to 6 sweeps.
     const MOST_SWEEPS: usize = 24;
     let mut vectors = [[0.0; 4]; 4];
@@ -97,13 +154,17 @@ fn largest_eigenvector(mut n: [[f64; 4]; 4]) -> [f64; 4] {
             break;
         }
     }
-    let mut largest = 0;
-    for i in 1..4 {
-        if n[i][i] > n[largest][largest] {
-            largest = i;
-        }
-    }
-    let u: [f64; 4] = std::array::from_fn(|k| vectors[k][largest]);
+    (std::array::from_fn(|i| n[i][i]), vectors)
+}
+
+/// The first of the greatest.
+fn greatest(values: &[f64; 4]) -> usize {
+    (1..4).fold(0, |most, i| if values[i] > values[most] { i } else { most })
+}
+
+/// A column of `vectors`, of length 1.
+fn unit(vectors: &[[f64; 4]; 4], column: usize) -> [f64; 4] {
+    let u: [f64; 4] = std::array::from_fn(|k| vectors[k][column]);
     let length = u.iter().map(|c| c * c).sum::<f64>().sqrt();
     u.map(|c| c / length)
 }
