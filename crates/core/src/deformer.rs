@@ -88,7 +88,16 @@ impl Deformer {
             return Err(Error::argument("logits", format!("the one at ({}, {}) is NaN", at / m, at % m)));
         }
         let frame = Frame::around(&x, dim);
-        Ok(Deformer { dim, frame, x, p: p.to_vec(), logits, transform, undecided: 0.0, last: Mutex::new(None) })
+        Ok(Deformer {
+            dim,
+            frame,
+            x,
+            p: p.to_vec(),
+            logits,
+            transform,
+            undecided: 0.0,
+            last: Mutex::new(None),
+        })
     }
 
     /// Lets it move points as [`Handles::undecided`] says.

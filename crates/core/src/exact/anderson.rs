@@ -6,8 +6,10 @@ use crate::error::Error;
 const HISTORY: usize = 10;
 /// Evaluations at most.
 const MOST: usize = 100;
-/// A step may leave this many times the square of the best rest: where rotations swing, the way down leads over hills.
+/// A step over hills may leave this many times the square of the best rest: where rotations swing, the way down leads over them.
 const UPHILL: f64 = 9.0;
+/// Halvings of a step downhill that does not help, until no shorter one is tried.
+const HALVINGS: i32 = 8;
 /// A difference of which no more than this part (of its square) is new says nothing new.
 const SAME: f64 = 1e-12;
 
@@ -28,30 +30,42 @@ impl Guess {
     }
 }
 
-/// From `start` to targets that leave no more than `enough` of any coordinate, or else the best that were found.
+/// From `start` to targets that leave no more than `enough` of any coordinate, or else the best that were found; only downhill, or `over_hills`, by
+/// which an equation that has a solution is solved more often, and one that has none leads farther astray.
 ///
 /// # Errors
 /// Those of `rest`, which says what targets leave.
 pub(super) fn solve(
     start: Guess,
     enough: f64,
+    over_hills: bool,
     rest: impl Fn(&[f64]) -> Result<Vec<f64>, Error>,
 ) -> Result<Guess, Error> {
     let (mut now, mut best) = (start.clone(), start);
     let mut history = History::default();
+    let mut halvings = 0;
     for _ in 0..MOST {
-        if best.worst() <= enough {
+        if best.worst() <= enough || halvings > HALVINGS {
             break;
         }
         let step = history.step(&now.rest);
+        let step = step.iter().map(|s| s * 0.5f64.powi(halvings));
         let targets: Vec<f64> = now.targets.iter().zip(step).map(|(t, s)| t + s).collect();
         let next = Guess { rest: rest(&targets)?, targets };
-        history.push(&now, &next);
-        if next.square() < best.square() {
+        let better = next.square() < best.square();
+        if better || over_hills {
+            history.push(&now, &next);
+            halvings = 0;
+        } else {
+            // What was learned leads astray: from the best again, by a plain and shorter step.
+            history = History::default();
+            halvings += 1;
+        }
+        let near = over_hills && next.square() <= UPHILL * best.square();
+        if better {
             best = next.clone();
         }
-        // From the best again where that led too far astray; what was learned there is kept.
-        now = if next.square() <= UPHILL * best.square() { next } else { best.clone() };
+        now = if better || near { next } else { best.clone() };
     }
     Ok(best)
 }

@@ -158,7 +158,7 @@ impl<'a, const D: usize> Handles<'a, D> {
             Transform::Similarity => (matrix::norm(&moments.pq) / matrix::norm(&moments.pp)).min(1.0),
             _ => 1.0,
         };
-        rotation::mean(&moments.pq, anchor, self.undecided * shrunk * rotation::gap(&moments.pp))
+        rotation::mean(&moments.pq, anchor, &moments.pp, self.undecided * shrunk)
     }
 }
 

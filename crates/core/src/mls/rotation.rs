@@ -23,15 +23,21 @@ fn target<const D: usize>(moment: &Matrix<D>, g: &Matrix<D>) -> Matrix<D> {
     std::array::from_fn(|r| std::array::from_fn(|c| moment[r][c] * inverse + ANCHOR_WEIGHT * g[c][r]))
 }
 
-/// The mean of the rotations that fit `moment` almost as well as the best one: as [`anchored`], where the best one fits so much better
-/// than any that is turned against it, by `gap`, that it is alone; no rotation, and shorter, where it is not.
+/// The mean of the rotations that fit `moment` almost as well as the best one: as [`anchored`] where the best one fits better than any
+/// that is turned against it by at least the `part` of what it does at rest (`rest` is the moment matrix of p with itself); no rotation, and
+/// shorter, where it does not.
 ///
 /// `sum f_i R(u_i) / sum f_i`, with `u_i` the eigenvectors of Horn's matrix and `f_i = max(0, 1 - (l_1 - l_i) / gap)`, `l_i` their eigenvalues, the
 /// `tr(R C)` of each. Unlike the best rotation it has no jumps: it changes by at most about `1 / gap` times what C changes.
-pub(super) fn mean<const D: usize>(moment: &Matrix<D>, g: &Matrix<D>, gap: f64) -> Matrix<D> {
+pub(super) fn mean<const D: usize>(
+    moment: &Matrix<D>,
+    g: &Matrix<D>,
+    rest: &Matrix<D>,
+    part: f64,
+) -> Matrix<D> {
     let size = norm(moment);
     let target = target(moment, g);
-    let gap = if size > 0.0 { gap / size } else { 0.0 };
+    let part = if size > 0.0 { part / size } else { 0.0 };
     let mut r = [[0.0; D]; D];
     match D {
         1 => r[0][0] = 1.0,
@@ -39,12 +45,18 @@ pub(super) fn mean<const D: usize>(moment: &Matrix<D>, g: &Matrix<D>, gap: f64) 
             let best = best_rotation(&target);
             let (cos, sin) = (target[0][0] + target[1][1], target[0][1] - target[1][0]);
             // Of the best and that which is turned by half a turn against it, which cancels it.
+            let gap = part * 2.0 * (rest[0][0] + rest[1][1]);
             let other = (1.0 - 2.0 * cos.hypot(sin) / gap).max(0.0);
             r = best.map(|row| row.map(|e| e * (1.0 - other) / (1.0 + other)));
         }
         _ => {
             let (values, vectors) = eigen(horn(&target));
             let best = greatest(&values);
+            let next = (0..4).filter(|&i| i != best).map(|i| values[i]).fold(f64::MIN, f64::max);
+            // Of symmetric matrices without negative eigenvalues this is the sum of the two lesser ones, twice. Bounded first, which is cheap.
+            let diagonal = || (0..D).map(|k| rest[k][k]);
+            let bound = 2.0 * (diagonal().sum::<f64>() - diagonal().fold(0.0, f64::max));
+            let gap = if values[best] - next >= part * bound { 0.0 } else { part * gap(horn(rest)) };
             let mut sum = 0.0;
             for (i, value) in values.iter().enumerate() {
                 // Where the gap is 0 only the best counts.
@@ -63,17 +75,11 @@ pub(super) fn mean<const D: usize>(moment: &Matrix<D>, g: &Matrix<D>, gap: f64) 
     r
 }
 
-/// By how much less than the best rotation any fits `moment` that is turned against it (half a turn, about the worst axis).
-pub(super) fn gap<const D: usize>(moment: &Matrix<D>) -> f64 {
-    match D {
-        1 => 0.0,
-        2 => 2.0 * (moment[0][0] + moment[1][1]).hypot(moment[0][1] - moment[1][0]),
-        _ => {
-            let (mut values, _) = eigen(horn(moment));
-            values.sort_by(f64::total_cmp);
-            values[3] - values[2]
-        }
-    }
+/// By how much the greatest eigenvalue is above the next.
+fn gap(n: [[f64; 4]; 4]) -> f64 {
+    let (mut values, _) = eigen(n);
+    values.sort_by(f64::total_cmp);
+    values[3] - values[2]
 }
 
 /// The rotation `R` that maximises `tr(R C)`.
