@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# fuzz/run.sh SECONDS [TARGET...]: fuzzes each parser for so many seconds. Stable Rust, no cargo-fuzz.
+# fuzz/run.sh SECONDS [TARGET...]: fuzzes each parser for so many seconds, from $FUZZ_SEED (1; 0 is another each time).
+# Stable Rust, no cargo-fuzz.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -24,7 +25,7 @@ for target in "${targets[@]}"; do
     mkdir -p "artifacts/$target"
     log="artifacts/$target.log"
     echo "== $target, $seconds s"
-    if ! "$built/$target" "corpus/$target" -max_total_time="$seconds" -max_len=4096 -rss_limit_mb=512 \
+    if ! "$built/$target" "corpus/$target" -seed="${FUZZ_SEED:-1}" -max_total_time="$seconds" -max_len=4096 -rss_limit_mb=512 \
         -malloc_limit_mb=256 -timeout=10 -artifact_prefix="artifacts/$target/" -print_final_stats=1 >"$log" 2>&1; then
         failed+=("$target")
         tail -n 40 "$log"

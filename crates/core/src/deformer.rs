@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Points between two reports of progress.
 const CHUNK: usize = 1 << 16;
 /// Points that one thread takes at a time.
-const BLOCK: usize = 1024;
+const BLOCK: usize = 2048;
 
 /// Points bound to the logits that a weight function gave for them. Dragging changes the targets alone.
 ///

@@ -7,9 +7,11 @@
 //! Plain arrays of 16 in place of intrinsics were tried: the compiler turns nested loops over them into gathers. Kernels that are one
 //! loop over lanes, without a nested one, need no intrinsics: [`loops`].
 
+mod doubles;
 mod lanes;
 pub(crate) mod loops;
 
+pub(crate) use doubles::{Doubles, WIDEST};
 pub(crate) use lanes::{Aligned, Lanes, Portable, WIDTH};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lanes::{Avx2, Avx512};
@@ -120,6 +122,7 @@ mod tests {
             x.mul(y),
             x.div(y),
             x.mul_add(y, L::splat(0.5)),
+            x.mul_sub_from(y, L::splat(0.5)),
             x.max(y),
             y.inverse_sqrt(),
             y.inverse(),
@@ -166,12 +169,13 @@ mod tests {
     fn every_instruction_set_of_this_machine_gives_the_same_answers() {
         let a = std::array::from_fn(|i| (i as f32 * 0.7).sin());
         let b = std::array::from_fn(|i| (i as f32 * 1.3).cos() + 2.0);
-        let operations: [fn(f32, f32) -> f32; 10] = [
+        let operations: [fn(f32, f32) -> f32; 11] = [
             |a, b| a + b,
             |a, b| a - b,
             |a, b| a * b,
             |a, b| a / b,
             |a, b| a * b + 0.5,
+            |a, b| 0.5 - a * b,
             f32::max,
             |_, b| 1.0 / b.sqrt(),
             |_, b| 1.0 / b,
@@ -192,7 +196,7 @@ mod tests {
                 assert_eq!(bits >> i & 1 == 1, a[i] < b[i] - 2.0, "{simd:?}, lane {i}");
             }
             assert_eq!(permuted(simd, &a, &places), places.map(|i| a[i as usize]), "{simd:?}");
-            assert!((results[10][0] - a.iter().sum::<f32>()).abs() < 1e-5, "{simd:?}");
+            assert!((results[11][0] - a.iter().sum::<f32>()).abs() < 1e-5, "{simd:?}");
         }
     }
 }

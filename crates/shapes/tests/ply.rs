@@ -275,6 +275,25 @@ fn refusals_name_the_place() {
 }
 
 #[test]
+fn long_names_are_shown_by_their_beginning() {
+    let tag = "tag".repeat(1000);
+    let properties =
+        format!("property list int int {tag}\nproperty float x\nproperty float y\nproperty float z\n");
+    let file = |format: &str, body: &str| {
+        format!("ply\nformat {format} 1.0\nelement vertex 1\n{properties}end_header\n{body}")
+    };
+    for (format, body) in [
+        ("ascii", "-1 0 0 0\n"),
+        ("ascii", "4 0 0 0\n"),
+        ("binary_little_endian", "\u{7f}\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0"),
+        ("binary_big_endian", "\u{7f}\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0"),
+    ] {
+        let message = refused(file(format, body).as_bytes());
+        assert!(message.contains("'tagtag") && message.len() < 200, "{message}");
+    }
+}
+
+#[test]
 fn what_a_line_has_beyond_its_row_is_carried_over() {
     let shape = ply(&ascii("0 0 0 9 8", "3 0 1 2 7"));
     assert_eq!(fact(&shape, "more than the header says"), "on 2 lines (carried over)");

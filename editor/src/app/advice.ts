@@ -26,6 +26,7 @@ export class Advice {
   }
 
   #soon(): void {
+    if (this.#history.inGesture) return; // asked when it ends
     clearTimeout(this.#waiting);
     this.#waiting = setTimeout(() => void this.#ask(), REST_MILLISECONDS);
   }

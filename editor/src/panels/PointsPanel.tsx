@@ -1,4 +1,4 @@
-import { useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { removeSelected, resetTargets, select, setMirror } from "../commands/index.ts";
 import { twinOf } from "../model/mirror.ts";
 import { type ControlPoint, isMoved } from "../model/session.ts";
@@ -10,8 +10,9 @@ import { PointFields } from "./PointFields.tsx";
 import { useApp, useAppState } from "./useStore.ts";
 
 const MOST_PLACED = 200;
-/** More of them go in two columns. */
+/** More of them go in two columns, if their names are no longer than this: with the mark of a twin beside them, without. */
 const COLUMN = 8;
+const SHORT = { paired: 10, alone: 14 };
 
 export function PointsPanel() {
   const app = useApp();
@@ -74,8 +75,14 @@ function PointList({ points }: { points: readonly ControlPoint[] }) {
   const names = new Map(points.map((point) => [point.id, point.name]));
   const size = shape ? 2 * shape.opened.frame.half : 1;
   const chosen = new Set(session.selection);
+  const last = session.selection.at(-1);
+  const list = useRef<HTMLUListElement>(null);
+  // What is chosen on the shape is seen in the list.
+  useEffect(() => list.current?.querySelector(".leads")?.scrollIntoView({ block: "nearest" }), [last]);
+  const longest = Math.max(...points.map(({ name }) => name.length));
+  const twoColumns = points.length > COLUMN && longest <= (session.settings.mirror ? SHORT.paired : SHORT.alone);
   return (
-    <ul class={`points ${points.length > COLUMN ? "two-columns" : ""}`} aria-label="Control points">
+    <ul ref={list} class={`points ${twoColumns ? "two-columns" : ""}`} aria-label="Control points">
       {points.map((point, i) => {
         const away = distances.get(point.id);
         const twin = session.settings.mirror && twinOf(session, point.id);
@@ -85,7 +92,7 @@ function PointList({ points }: { points: readonly ControlPoint[] }) {
           <li key={point.id}>
             <button
               type="button"
-              class={`point ${chosen.has(point.id) ? "chosen" : ""}`}
+              class={`point ${chosen.has(point.id) ? "chosen" : ""} ${point.id === last ? "leads" : ""}`}
               aria-pressed={chosen.has(point.id)}
               onClick={(event) => app.do(select([point.id], event.shiftKey || event.ctrlKey || event.metaKey ? "toggle" : "replace"))}
             >

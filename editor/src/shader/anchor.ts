@@ -26,21 +26,16 @@ const RIDGE = 1e-12;
 /** The anchor of control points `p` that are moved to `q`, m x 3 each, some of them turned. */
 export function anchor(p: ArrayLike<number>, q: ArrayLike<number>, turned: readonly TurnedPoint[] = []): Anchor {
   const m = p.length / 3;
-  const mean = (v: ArrayLike<number>, c: number): number => {
-    let sum = 0;
-    for (let i = 0; i < m; i++) sum += v[3 * i + c] - v[c];
-    return v[c] + sum / m;
-  };
-  const pMean = [0, 1, 2].map((c) => mean(p, c));
-  const qMean = [0, 1, 2].map((c) => mean(q, c));
+  const pMean = mean(p, m);
+  const qMean = mean(q, m);
   const pq = zero();
   const pp = zero();
-  for (let i = 0; i < m; i++) {
+  for (let i = 0; i < 3 * m; i += 3) {
     for (let c = 0; c < 3; c++) {
+      const a = p[i + c] - pMean[c];
       for (let d = 0; d < 3; d++) {
-        const a = p[3 * i + c] - pMean[c];
-        pq[3 * c + d] += a * (q[3 * i + d] - qMean[d]);
-        pp[3 * c + d] += a * (p[3 * i + d] - pMean[d]);
+        pq[3 * c + d] += a * (q[i + d] - qMean[d]);
+        pp[3 * c + d] += a * (p[i + d] - pMean[d]);
       }
     }
   }
@@ -64,6 +59,12 @@ export function anchor(p: ArrayLike<number>, q: ArrayLike<number>, turned: reado
   const along = (traceOfProduct(rotation, pq) + larger) / extent;
   const scale = extent > 0 && Number.isFinite(along) ? Math.max(along, 0) : 1;
   return { rotation, scale, linear: linear(pp, plus(pq, scaled), rotation) };
+}
+
+function mean(v: ArrayLike<number>, m: number): [number, number, number] {
+  const sum: [number, number, number] = [0, 0, 0];
+  for (let i = 0; i < 3 * m; i++) sum[i % 3] += v[i] - v[i % 3];
+  return [v[0] + sum[0] / m, v[1] + sum[1] / m, v[2] + sum[2] / m];
 }
 
 /** `R + (C^T - R P)(P + ridge)^-1`. */

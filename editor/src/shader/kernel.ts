@@ -36,6 +36,8 @@ const UNIFORMS = [
   "logits", "controlPoints", "m", "transform", "temperature", "moved", "anyTurned",
   "anchorRotation", "anchorScale", "anchorLinear", "tintBy", "tinted",
 ] as const; // prettier-ignore
+/** Those of one number that are no whole ones. */
+const FRACTIONS: ReadonlySet<(typeof UNIFORMS)[number]> = new Set(["temperature", "anchorScale"]);
 /** Of the table of control points: p, q, colours, and the rows of rotations with squares and scales beside. */
 const ROWS = 6;
 /** Larger than any logit that means anything, and safe to compute with, unlike infinity. */
@@ -56,6 +58,8 @@ export class Kernel {
   readonly program: WebGLProgram;
   readonly uniforms: Record<(typeof UNIFORMS)[number], WebGLUniformLocation | null>;
   readonly state: GlState;
+  /** What the uniforms of one number are: most of them are the same in every frame. */
+  readonly #numbers = new Map<(typeof UNIFORMS)[number], number>();
 
   /** `state` is asked for what others set too, so that they know; the context itself where there is nobody else. */
   constructor(gl: WebGL2RenderingContext, state: GlState = gl) {
@@ -71,11 +75,9 @@ export class Kernel {
     return this.use(() => new BoundVertices(this, rest));
   }
 
-  /** Does some work in the context. Only what the browser knows without waiting for the GPU is asked of it. */
+  /** Does some work in the context, between frames of who shares it: they leave no vertex array bound, nor does this. */
   use<T>(work: () => T): T {
     const { gl, state } = this;
-    const array = gl.getParameter(gl.VERTEX_ARRAY_BINDING) as WebGLVertexArrayObject | null;
-    gl.bindVertexArray(null);
     state.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
     state.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
     state.pixelStorei(gl.UNPACK_ALIGNMENT, 4);
@@ -83,9 +85,17 @@ export class Kernel {
     try {
       return work();
     } finally {
-      gl.bindVertexArray(array);
+      gl.bindVertexArray(null);
       gl.bindBuffer(gl.ARRAY_BUFFER, null);
     }
+  }
+
+  /** Sets a uniform of one number of the program that is in use. */
+  setNumber(name: (typeof UNIFORMS)[number], value: number): void {
+    if (this.#numbers.get(name) === value) return;
+    this.#numbers.set(name, value);
+    if (FRACTIONS.has(name)) this.gl.uniform1f(this.uniforms[name], value);
+    else this.gl.uniform1i(this.uniforms[name], value);
   }
 
   /** Makes a texture the one that is worked on, and that the sampler of its unit reads. */
@@ -108,7 +118,6 @@ export class BoundVertices {
   readonly #controlPoints: WebGLTexture;
   #logits: WebGLTexture | undefined;
   #m = 0;
-  #colours: Float32Array = new Float32Array(0);
   #table: Float32Array = new Float32Array(0);
 
   constructor(kernel: Kernel, rest: RestVertices) {
@@ -167,8 +176,8 @@ export class BoundVertices {
       this.#kernel.bindTexture("logits", this.#logits);
       gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, padded);
       this.#m = m;
-      this.#colours = colours;
       this.#table = new Float32Array(4 * m * ROWS);
+      for (let i = 0; i < m; i++) this.#table.set(colours.subarray(3 * i, 3 * i + 3), 4 * (2 * m + i));
       this.#kernel.bindTexture("controlPoints", this.#controlPoints);
       gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, m, ROWS, 0, gl.RGBA, gl.FLOAT, null);
     });
@@ -181,25 +190,26 @@ export class BoundVertices {
   }
 
   #compute({ p, q, turned, transform, temperature, tint }: GpuMotion): void {
-    const { gl, program, state, uniforms } = this.#kernel;
+    const kernel = this.#kernel;
+    const { gl, program, state, uniforms } = kernel;
     const m = this.#m;
     state.useProgram(program);
-    this.#kernel.bindTexture("logits", this.#logits ?? null);
-    this.#kernel.bindTexture("controlPoints", this.#controlPoints);
+    kernel.bindTexture("logits", this.#logits ?? null);
+    kernel.bindTexture("controlPoints", this.#controlPoints);
     gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, m, ROWS, gl.RGBA, gl.FLOAT, this.#fill(p, q, turned));
     const { rotation, scale, linear } = anchor(p, q, turned);
-    gl.uniform1i(uniforms.logits, UNITS.logits);
-    gl.uniform1i(uniforms.controlPoints, UNITS.controlPoints);
-    gl.uniform1i(uniforms.m, m);
-    gl.uniform1i(uniforms.transform, TRANSFORM_CODES[transform]);
-    gl.uniform1f(uniforms.temperature, temperature);
-    gl.uniform1i(uniforms.moved, p.every((c, at) => c === q[at]) && turned.every(isStill) ? 0 : 1);
-    gl.uniform1i(uniforms.anyTurned, turned.length > 0 ? 1 : 0);
+    kernel.setNumber("logits", UNITS.logits);
+    kernel.setNumber("controlPoints", UNITS.controlPoints);
+    kernel.setNumber("m", m);
+    kernel.setNumber("transform", TRANSFORM_CODES[transform]);
+    kernel.setNumber("temperature", temperature);
+    kernel.setNumber("moved", p.every((c, at) => c === q[at]) && turned.every(isStill) ? 0 : 1);
+    kernel.setNumber("anyTurned", turned.length > 0 ? 1 : 0);
+    kernel.setNumber("anchorScale", scale);
+    kernel.setNumber("tintBy", TINT_CODES[tint.by]);
+    kernel.setNumber("tinted", tint.by === "weight" ? tint.of : -1);
     gl.uniformMatrix3fv(uniforms.anchorRotation, true, rotation);
-    gl.uniform1f(uniforms.anchorScale, scale);
     gl.uniformMatrix3fv(uniforms.anchorLinear, true, linear);
-    gl.uniform1i(uniforms.tintBy, TINT_CODES[tint.by]);
-    gl.uniform1i(uniforms.tinted, tint.by === "weight" ? tint.of : -1);
     gl.bindVertexArray(this.#array);
     // What is written to must not be bound to anything else, and drawing may have left it so.
     gl.bindBuffer(gl.ARRAY_BUFFER, null);
@@ -249,7 +259,6 @@ export class BoundVertices {
       for (let c = 0; c < 3; c++) {
         table[4 * i + c] = p[3 * i + c];
         table[4 * (m + i) + c] = q[3 * i + c];
-        table[4 * (2 * m + i) + c] = this.#colours[3 * i + c];
       }
     }
     table.fill(0, 12 * m);

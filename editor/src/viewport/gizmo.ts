@@ -3,6 +3,7 @@
 import { Group, type Matrix4, Object3D, type Quaternion, type Scene, Vector3 } from "three";
 import { TransformControls } from "three/addons/controls/TransformControls.js";
 import type { Tool } from "../model/view.ts";
+import { AXIS_COLOURS, AxisLines } from "./axisLines.ts";
 import type { Stage } from "./stage.ts";
 
 export interface GizmoEvents {
@@ -17,6 +18,7 @@ export class Gizmo {
   readonly #scene: Scene;
   readonly #shown = new Group();
   readonly #proxy = new Object3D();
+  readonly #lines = new AxisLines();
   readonly #start = new Vector3();
   #dim: 1 | 2 | 3 = 3;
   /** Steps that translations keep to, relative to the shape's box; 0: none. */
@@ -26,20 +28,23 @@ export class Gizmo {
     this.#scene = scene;
     this.#controls = new TransformControls(stage.camera, stage.pane);
     this.#controls.setSize(0.78);
-    this.#controls.setColors(0xe0483e, 0x55a630, 0x3d7fe0, 0xffb020);
+    this.#controls.setColors(AXIS_COLOURS.X, AXIS_COLOURS.Y, AXIS_COLOURS.Z, 0xffb020);
     this.#shown.add(this.#controls.getHelper());
-    scene.add(this.#proxy, this.#shown);
+    scene.add(this.#proxy, this.#shown, this.#lines.object);
     this.#controls.addEventListener("change", () => stage.request());
     this.#controls.addEventListener("dragging-changed", ({ value }) => {
       stage.orbit.enabled = !value;
       this.#show(!value);
+      if (!value) this.#lines.hide();
     });
     this.#controls.addEventListener("mouseDown", () => {
       this.#start.copy(this.#proxy.position);
+      this.#lines.show(this.#controls.axis ?? "", this.#start);
       events.begin();
     });
     this.#controls.addEventListener("objectChange", () => {
       events.move(this.#map(), this.#controls.mode === "rotate" ? this.#proxy.quaternion : undefined);
+      this.#lines.moveTo(this.#proxy.position);
     });
     this.#controls.addEventListener("mouseUp", () => {
       events.end();

@@ -12,13 +12,15 @@ import {
   Points,
   ShaderMaterial,
   SRGBColorSpace,
+  type Vector3,
 } from "three";
 import { hueOf } from "../model/view.ts";
+import { still } from "./still.ts";
 
 export interface Marker {
   /** Relative to the shape's box. */
-  rest: readonly number[];
-  place: readonly number[];
+  rest: Vector3;
+  place: Vector3;
   /** Its place in the list, which gives the colour. */
   number: number;
   selected: boolean;
@@ -67,6 +69,9 @@ export class Markers {
   readonly object = new Group();
   readonly #geometry = new BufferGeometry();
   readonly #lineGeometry = new BufferGeometry();
+  #ends = new BufferAttribute(new Float32Array(0), 3);
+  #tone = new BufferAttribute(new Float32Array(0), 3);
+  #state = new BufferAttribute(new Float32Array(0), 1);
   readonly #pixels = { value: 16 };
   #count = -1;
 
@@ -97,8 +102,9 @@ export class Markers {
     nodes.forEach((node, i) => {
       node.frustumCulled = false;
       node.renderOrder = 10 + i;
-      this.object.add(node);
+      this.object.add(still(node));
     });
+    still(this.object);
   }
 
   /** The size of a disc in pixels of the screen. */
@@ -107,39 +113,46 @@ export class Markers {
   }
 
   update(markers: readonly Marker[]): void {
-    if (markers.length !== this.#count) {
-      this.#count = markers.length;
-      const buffer = (size: number): BufferAttribute => new BufferAttribute(new Float32Array(size * markers.length), size);
-      this.#geometry.dispose();
-      this.#lineGeometry.dispose();
-      this.#geometry.setAttribute("position", buffer(3));
-      this.#geometry.setAttribute("tone", buffer(3));
-      this.#geometry.setAttribute("state", buffer(1));
-      this.#lineGeometry.setAttribute("position", new BufferAttribute(new Float32Array(6 * markers.length), 3));
-    }
-    const [position, tone, state] = ["position", "tone", "state"].map(
-      (name) => this.#geometry.getAttribute(name) as BufferAttribute,
-    );
-    const ends = this.#lineGeometry.getAttribute("position") as BufferAttribute;
+    if (markers.length !== this.#count) this.#setCount(markers.length);
     markers.forEach((marker, i) => {
-      write(position, 3 * i, marker.place);
-      write(tone, 3 * i, colourOf(marker.number));
-      write(state, i, [(marker.selected ? 1 : marker.twin ? 2 : 0) + (marker.locked ? 4 : 0)]);
-      write(ends, 6 * i, marker.rest);
-      write(ends, 6 * i + 3, marker.place);
+      writeVector(this.#ends, 2 * i, marker.rest);
+      writeVector(this.#ends, 2 * i + 1, marker.place);
+      const [r, g, b] = colourOf(marker.number);
+      write(this.#tone, 6 * i + 3, r);
+      write(this.#tone, 6 * i + 4, g);
+      write(this.#tone, 6 * i + 5, b);
+      write(this.#state, 2 * i + 1, (marker.selected ? 1 : marker.twin ? 2 : 0) + (marker.locked ? 4 : 0));
     });
+  }
+
+  /** The ends of the lines are the places of the discs too: every second one of them. */
+  #setCount(count: number): void {
+    this.#count = count;
+    this.#geometry.dispose();
+    this.#lineGeometry.dispose();
+    this.#ends = new BufferAttribute(new Float32Array(6 * count), 3);
+    this.#tone = new BufferAttribute(new Float32Array(6 * count), 3);
+    this.#state = new BufferAttribute(new Float32Array(2 * count), 1);
+    this.#lineGeometry.setAttribute("position", this.#ends);
+    this.#geometry.setAttribute("position", this.#ends);
+    this.#geometry.setAttribute("tone", this.#tone);
+    this.#geometry.setAttribute("state", this.#state);
+    this.#geometry.setIndex(Array.from({ length: count }, (_, i) => 2 * i + 1));
   }
 }
 
 /** Only what has changed goes to the GPU. */
-function write(attribute: BufferAttribute, at: number, values: readonly number[]): void {
-  const { array } = attribute;
-  values.forEach((value, k) => {
-    const single = Math.fround(value);
-    if (array[at + k] === single) return;
-    array[at + k] = single;
-    attribute.needsUpdate = true;
-  });
+function write(attribute: BufferAttribute, at: number, value: number): void {
+  const single = Math.fround(value);
+  if (attribute.array[at] === single) return;
+  attribute.array[at] = single;
+  attribute.needsUpdate = true;
+}
+
+function writeVector(attribute: BufferAttribute, i: number, { x, y, z }: Vector3): void {
+  write(attribute, 3 * i, x);
+  write(attribute, 3 * i + 1, y);
+  write(attribute, 3 * i + 2, z);
 }
 
 const colours: [number, number, number][] = [];

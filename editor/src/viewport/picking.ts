@@ -15,7 +15,7 @@ const REACH = 12;
 export class Picking {
   readonly #rest: Float32Array;
   #shown: Float32Array;
-  #stale = false;
+  #stale = true;
   readonly #read: () => Float32Array;
   readonly #geometry: BufferGeometry | undefined;
   readonly #bvh: MeshBVH | undefined;

@@ -16,6 +16,7 @@ import {
   Vector3,
 } from "three";
 import type { Colouring } from "../model/view.ts";
+import { still } from "./still.ts";
 import { cloudMaterial, discDiameter } from "./cloud.ts";
 import type { BoundVertices, GpuMotion, Kernel, RestVertices } from "../shader/kernel.ts";
 
@@ -88,8 +89,8 @@ export class ShapeView {
       this.#node = new Points(this.#plain, this.#plainMaterial);
     }
     this.#node.frustumCulled = false;
-    this.object = new Group().add(this.#node);
-    if (this.#wire) this.object.add(this.#wire);
+    this.object = still(new Group()).add(still(this.#node));
+    if (this.#wire) this.object.add(still(this.#wire));
   }
 
   get drawn(): Drawn {

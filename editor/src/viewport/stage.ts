@@ -14,6 +14,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Clouds } from "./cloud.ts";
+import { still } from "./still.ts";
 
 const FIELD_OF_VIEW = 32;
 /** Room around the shape. */
@@ -24,8 +25,9 @@ export class Stage {
   readonly clouds = new Clouds();
   readonly camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
   readonly renderer: WebGLRenderer;
-  /** The part of the drawing surface that takes the pointer: all of it, or its left half. */
+  /** The part of the drawing surface that takes the pointer: all of it, or the half in which the pointer is. */
   readonly pane: HTMLElement;
+  #onRight = false;
   orbit!: OrbitControls;
   /** Called before a frame is drawn. */
   onFrame: () => void = () => {};
@@ -51,9 +53,11 @@ export class Stage {
     key.position.set(-1.2, 1.8, 2.2);
     const fill = new DirectionalLight(0xdfe8ff, 0.7);
     fill.position.set(2.5, -0.6, 1);
-    this.camera.add(key, key.target, fill, fill.target);
-    this.scene.add(this.camera, new HemisphereLight(0xffffff, 0x8a8378, 1.15));
+    this.camera.add(...[key, key.target, fill, fill.target].map(still));
+    this.scene.add(this.camera, still(new HemisphereLight(0xffffff, 0x8a8378, 1.15)));
+    still(this.scene);
     new ResizeObserver(() => this.resize()).observe(host);
+    for (const type of ["pointermove", "pointerdown", "wheel"] as const) host.addEventListener(type, (event) => this.#follow(event));
   }
 
   /** After everything that takes the pointer before it. */
@@ -71,6 +75,31 @@ export class Stage {
 
   get split(): boolean {
     return this.showRight !== undefined;
+  }
+
+  /** Whether the pointer is in the right half. */
+  get onRight(): boolean {
+    return this.split && this.#onRight;
+  }
+
+  /** Takes the pane to the half that the pointer has come to, and hands on what came beside it. Not away from what is dragged. */
+  #follow(event: PointerEvent | WheelEvent): void {
+    if (!this.split || event.target === this.pane) return;
+    const pressed = event instanceof PointerEvent && (!event.isPrimary || (event.type === "pointermove" && event.buttons !== 0));
+    if (!pressed) {
+      const { left, width } = this.#host.getBoundingClientRect();
+      this.#onRight = event.clientX > left + width / 2;
+      this.#placePane();
+      this.request();
+    }
+    if (event.type === "pointerdown") this.pane.setPointerCapture((event as PointerEvent).pointerId);
+    const Type = event.constructor as new (type: string, init: object) => Event;
+    if (!this.pane.dispatchEvent(new Type(event.type, event))) event.preventDefault();
+  }
+
+  #placePane(): void {
+    this.pane.style.width = this.split ? "50%" : "100%";
+    this.pane.style.left = this.onRight ? "50%" : "0";
   }
 
   /** Whether a drag of the left button or of one finger turns the view. */
@@ -125,7 +154,7 @@ export class Stage {
     if (width === 0 || height === 0) return;
     this.#size = { width, height };
     this.renderer.setSize(width, height, false);
-    this.pane.style.width = this.split ? "50%" : "100%";
+    this.#placePane();
     const narrow = Math.min(1, this.camera.aspect);
     this.camera.aspect = width / (this.split ? 2 : 1) / height;
     // What was in the window stays in it.

@@ -11,6 +11,10 @@ pub fn apply<const D: usize>(m: &Matrix<D>, v: &[f64; D]) -> [f64; D] {
     std::array::from_fn(|r| (0..D).map(|c| m[r][c] * v[c]).sum())
 }
 
+pub fn transposed<const D: usize>(m: &Matrix<D>) -> Matrix<D> {
+    std::array::from_fn(|r| std::array::from_fn(|c| m[c][r]))
+}
+
 pub fn scaled<const D: usize>(m: &Matrix<D>, s: f64) -> Matrix<D> {
     m.map(|row| row.map(|e| e * s))
 }

@@ -94,14 +94,19 @@ pub fn best_rotation<const D: usize>(c: &Matrix<D>) -> Matrix<D> {
             (r[0][0], r[0][1], r[1][0], r[1][1]) = (cos, -sin, sin, cos);
         }
         _ => {
-            let (values, vectors) = eigen(horn(c));
-            let full = of_quaternion(&unit(&vectors, greatest(&values)));
+            let full = of_quaternion(&best_quaternion(c));
             for (row, full) in r.iter_mut().zip(full) {
                 row.copy_from_slice(&full[..D]);
             }
         }
     }
     r
+}
+
+/// Its quaternion, in 3D.
+pub(super) fn best_quaternion<const D: usize>(c: &Matrix<D>) -> [f64; 4] {
+    let (values, vectors) = eigen(horn(c));
+    unit(&vectors, greatest(&values))
 }
 
 /// Horn's matrix: `tr(R C) = u^T N u` for the rotation of the unit quaternion `u = (w, x, y, z)`.

@@ -1,5 +1,7 @@
 //! Sixteen numbers in registers: one of 512 bits, two of 256, or whatever the compiler makes of an array.
 
+use super::doubles::{self, Doubles};
+
 /// Numbers side by side.
 pub(crate) const WIDTH: usize = 16;
 
@@ -20,6 +22,8 @@ pub(crate) trait Lanes: Copy {
     type Mask: Copy;
     /// Sixteen numbers of lanes.
     type Places: Copy;
+    /// Double-precision numbers on the same machine.
+    type Doubles: Doubles;
 
     fn splat(value: f32) -> Self;
     fn load(from: &[f32; WIDTH]) -> Self;
@@ -36,6 +40,8 @@ pub(crate) trait Lanes: Copy {
     fn div(self, other: Self) -> Self;
     /// `self * b + c`, rounded once where the instruction set can.
     fn mul_add(self, b: Self, c: Self) -> Self;
+    /// `c - self * b`, likewise.
+    fn mul_sub_from(self, b: Self, c: Self) -> Self;
     fn max(self, other: Self) -> Self;
     /// `1 / self` to 11 bits or more, in a fraction of the time of a division.
     fn estimated_inverse(self) -> Self;
@@ -97,6 +103,7 @@ impl Lanes for Portable {
     const REGISTERS: usize = 4;
     type Mask = [bool; WIDTH];
     type Places = [u32; WIDTH];
+    type Doubles = doubles::Pair;
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
@@ -129,6 +136,10 @@ impl Lanes for Portable {
     #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
         self.mul(b).add(c)
+    }
+    #[inline(always)]
+    fn mul_sub_from(self, b: Self, c: Self) -> Self {
+        c.sub(self.mul(b))
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
@@ -173,6 +184,7 @@ pub(crate) use x86::{Avx2, Avx512};
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
+    use super::doubles::{Eight, Four};
     use super::{Lanes, WIDTH};
     use std::arch::x86_64::*;
 
@@ -220,6 +232,7 @@ mod x86 {
         const REGISTERS: usize = 8;
         type Mask = (__m256, __m256);
         type Places = (__m256i, __m256i);
+        type Doubles = Four;
 
         intrinsics! { Avx2:
             add(other) = _mm256_add_ps;
@@ -227,6 +240,7 @@ mod x86 {
             mul(other) = _mm256_mul_ps;
             div(other) = _mm256_div_ps;
             mul_add(b, c) = _mm256_fmadd_ps;
+            mul_sub_from(b, c) = _mm256_fnmadd_ps;
             max(other) = _mm256_max_ps;
             estimated_inverse() = _mm256_rcp_ps;
             estimated_inverse_sqrt() = _mm256_rsqrt_ps;
@@ -308,6 +322,7 @@ mod x86 {
         const REGISTERS: usize = 32;
         type Mask = __mmask16;
         type Places = __m512i;
+        type Doubles = Eight;
 
         intrinsics! { Avx512:
             add(other) = _mm512_add_ps;
@@ -315,6 +330,7 @@ mod x86 {
             mul(other) = _mm512_mul_ps;
             div(other) = _mm512_div_ps;
             mul_add(b, c) = _mm512_fmadd_ps;
+            mul_sub_from(b, c) = _mm512_fnmadd_ps;
             max(other) = _mm512_max_ps;
             estimated_inverse() = _mm512_rcp14_ps;
             estimated_inverse_sqrt() = _mm512_rsqrt14_ps;

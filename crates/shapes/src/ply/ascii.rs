@@ -34,8 +34,8 @@ impl Lines<'_> {
     fn row(&mut self, element: &Element, row: usize) -> Result<(Range<usize>, u64), Error> {
         let line = self.next.line;
         self.next().ok_or_else(|| {
-            let (name, count) = (&element.name, element.count);
-            Error::at_line(line, format!("the file ends before row {row} of the {count} of '{name}'"))
+            let (name, count) = (element.shown(), element.count);
+            Error::at_line(line, format!("the file ends before row {row} of the {count} of {name}"))
         })
     }
 }
@@ -52,8 +52,8 @@ fn walk_row(
     let mut words = text::tokens(&source[line.clone()], line.start);
     for (index, property) in element.properties.iter().enumerate() {
         let ended = || {
-            let (name, property) = (&element.name, &property.name);
-            wrong(format!("the row of '{name}' ends before its property '{property}' is complete"))
+            let (name, property) = (element.shown(), property.shown());
+            wrong(format!("the row of {name} ends before its property {property} is complete"))
         };
         let word = words.next().ok_or_else(ended)?;
         match property.kind {
@@ -61,8 +61,8 @@ fn walk_row(
             Kind::List { .. } => {
                 let word = &source[word];
                 let Some(count) = number::parse(word).filter(|&c| c >= 0.0 && c.fract() == 0.0) else {
-                    let (name, shown) = (&property.name, text::quote(word));
-                    return Err(wrong(format!("expected the length of the list '{name}', found {shown}")));
+                    let (name, shown) = (property.shown(), text::quote(word));
+                    return Err(wrong(format!("expected the length of the list {name}, found {shown}")));
                 };
                 for _ in 0..count as u64 {
                     see(index, words.next().ok_or_else(ended)?).map_err(wrong)?;

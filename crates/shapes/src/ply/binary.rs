@@ -19,9 +19,9 @@ fn walk_row(
     for (index, property) in element.properties.iter().enumerate() {
         let left = source.len() - at;
         let ended = |needed: String| {
-            let (name, property) = (&element.name, &property.name);
+            let (name, property) = (element.shown(), property.shown());
             let message =
-                format!("expected {needed} of the property '{property}' of '{name}', found {left} bytes");
+                format!("expected {needed} of the property {property} of {name}, found {left} bytes");
             Error::at_byte(at as u64, message)
         };
         match property.kind {
@@ -38,8 +38,8 @@ fn walk_row(
                 }
                 let length = count.get(&source[at..], order);
                 if !(length >= 0.0 && length.fract() == 0.0) {
-                    let (name, property) = (&element.name, &property.name);
-                    let message = format!("the list '{property}' of '{name}' has the length {length}");
+                    let (name, property) = (element.shown(), property.shown());
+                    let message = format!("the list {property} of {name} has the length {length}");
                     return Err(Error::at_byte(at as u64, message));
                 }
                 if length * item.size() as f64 > (left - count.size()) as f64 {

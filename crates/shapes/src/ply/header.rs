@@ -39,7 +39,19 @@ pub(super) struct Element {
     pub properties: Vec<Property>,
 }
 
+impl Property {
+    /// Its name for an error message.
+    pub(super) fn shown(&self) -> String {
+        text::quote(self.name.as_bytes())
+    }
+}
+
 impl Element {
+    /// Its name for an error message.
+    pub(super) fn shown(&self) -> String {
+        text::quote(self.name.as_bytes())
+    }
+
     /// Where the property of this name is among the others.
     pub(super) fn find(&self, name: &str) -> Option<usize> {
         self.properties.iter().position(|p| p.name == name)
@@ -149,8 +161,7 @@ pub(super) fn read(source: &[u8]) -> Result<Header, Error> {
                 // Of the others there may be several: all are carried over.
                 let read = matches!(name.as_str(), "vertex" | "face" | "tristrips");
                 if read && elements.iter().any(|e| e.name == name) {
-                    let shown = text::quote(name.as_bytes());
-                    return Err(wrong(format!("there is a second element {shown}")));
+                    return Err(wrong(format!("there is a second element '{name}'")));
                 }
                 elements.push(Element { name, count, properties: Vec::new() });
             }

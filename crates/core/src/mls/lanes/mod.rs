@@ -2,14 +2,14 @@
 //!
 //! ```text
 //! moments      C, p*, q* of each lane: one product of its weights with the control points relative to its dominant one
-//! rotation     the rotation that C and the anchor ask for: Horn's quaternion
 //! turned       what those of them add that carry a rotation
+//! start        near the rotation that C and the anchor ask for: Horn's quaternion, in single precision
+//! rotation     that rotation: Newton's method
 //! linear       scale, or affine map
 //! landing      y = x + (M - I)(x - p*) + (q* - p*)
 //! ```
 //!
-//! Each step is a loop over lanes of plain arithmetic, which the compiler turns into the instructions of the machine. Double precision
-//! costs twice the arithmetic of single; but with the weights of a trained network half of the points of a chair have a C
+//! Double precision costs twice the arithmetic of single; but with the weights of a trained network half of the points of a chair have a C
 //! so close to rank 1 that single precision turns them by 1e-6 and more (by 0.1 at T = 0.3). What is stored, and read from
 //! memory in each frame, is single.
 //!
@@ -20,17 +20,20 @@
 // Lanes are counted: a loop over one array's elements would hide that it is over all of them.
 #![allow(clippy::needless_range_loop)]
 
+mod landing;
 mod linear;
 mod moments;
 mod rotation;
+mod start;
 mod turned;
 
-use super::matrix::{identity, Matrix};
+use super::matrix::{identity, transposed, Matrix};
+use super::rotation::best_quaternion;
 use super::turned::Turned;
 use super::{Anchor, Transform, ANCHOR_WEIGHT};
 use crate::frame::Frame;
-use crate::simd::loops::{multiply_add, multiply_add_f32, multiversion_loops};
-use crate::simd::Simd;
+use crate::simd::loops::{multiply_add, multiversion_loops};
+use crate::simd::{Simd, WIDTH};
 use crate::softmax::{Row, LANES};
 
 /// Points in a batch: enough of them to hide the latency of divisions, few enough to stay in the first cache.
@@ -38,6 +41,12 @@ pub(crate) const BATCH: usize = 64;
 
 /// One number of each point of a batch.
 type Lane = [f64; BATCH];
+
+/// The same in single precision.
+type Singles = [[f32; WIDTH]; BATCH / WIDTH];
+
+/// `p_i`, `q_i` by coordinates, each filled up to whole sixteens.
+type Columns = [Vec<f64>; 6];
 
 /// What one frame's kernel needs of the control points.
 pub(crate) struct LaneHandles {
@@ -47,7 +56,21 @@ pub(crate) struct LaneHandles {
     frame: Frame,
     /// `p_i`, `q_i`, in the frame.
     points: Vec<[f64; 6]>,
+    columns: Columns,
+    turning: Turning,
     turned: Vec<Turned<3>>,
+}
+
+/// The anchor's rotation.
+struct Turning {
+    matrix: Matrix<3>,
+    quaternion: [f64; 4],
+}
+
+impl Turning {
+    fn new(matrix: Matrix<3>) -> Self {
+        Turning { matrix, quaternion: best_quaternion(&transposed(&matrix)) }
+    }
 }
 
 /// Points of a batch in the order of memory, with room for what becomes of them.
@@ -62,9 +85,6 @@ pub(crate) struct BatchPoints<'a> {
 
 /// The intermediate results of a batch, to be used for one after another.
 pub(crate) struct Scratch {
-    /// `p_k`, `q_k` of the dominant control point.
-    own: [Lane; 6],
-    sums: moments::Accumulator,
     /// `C / w_2`, row-major; for affine maps of the residuals.
     moment: [Lane; 9],
     /// The moments of p with itself: xx, xy, xz, yy, yz, zz (affine), or their trace alone (similarity).
@@ -72,29 +92,47 @@ pub(crate) struct Scratch {
     added: turned::Added,
     p_mean: [Lane; 3],
     shift: [Lane; 3],
-    /// A, its determinant, the length of its cofactors, the root, the slope there: see [`rotation`].
-    turn: rotation::Turn,
+    start: Start,
+    /// Quaternions.
+    turn: [Lane; 4],
     /// `M - I`.
     change: [Lane; 9],
     /// Whether the lane's result is right: 1 or 0, of the size of the numbers that it is computed from.
     sound: Lane,
 }
 
+/// Where rotations are looked for, in single precision.
+struct Start {
+    /// C, and what becomes of it: A.
+    moment: [Singles; 9],
+    /// `1 / |C|`.
+    inverse: Singles,
+    d: Singles,
+    k: Singles,
+    v: Singles,
+    quaternion: [Singles; 4],
+}
+
 impl Scratch {
     pub(crate) fn new() -> Self {
         const ZERO: Lane = [0.0; BATCH];
-        let turn = rotation::Turn { a: [ZERO; 9], d: ZERO, k: ZERO, v: ZERO, slope: ZERO };
-        let (moment, extent, change) = ([ZERO; 9], [ZERO; 6], [ZERO; 9]);
+        const SINGLE: Singles = [[0.0; WIDTH]; BATCH / WIDTH];
         Scratch {
-            own: [ZERO; 6],
-            sums: moments::Accumulator::ZERO,
-            moment,
-            extent,
+            moment: [ZERO; 9],
+            extent: [ZERO; 6],
             added: turned::Added::ZERO,
             p_mean: [ZERO; 3],
             shift: [ZERO; 3],
-            turn,
-            change,
+            start: Start {
+                moment: [SINGLE; 9],
+                inverse: SINGLE,
+                d: SINGLE,
+                k: SINGLE,
+                v: SINGLE,
+                quaternion: [SINGLE; 4],
+            },
+            turn: [ZERO; 4],
+            change: [ZERO; 9],
             sound: ZERO,
         }
     }
@@ -113,7 +151,13 @@ impl LaneHandles {
         anchor: Anchor<3>,
         frame: Frame,
     ) -> Self {
-        LaneHandles { simd: Simd::detect(), transform, anchor, frame, points, turned }
+        let columns = std::array::from_fn(|k| {
+            let mut column: Vec<f64> = points.iter().map(|point| point[k]).collect();
+            column.resize(points.len().next_multiple_of(16), 0.0);
+            column
+        });
+        let turning = Turning::new(anchor.rotation);
+        LaneHandles { simd: Simd::detect(), transform, anchor, frame, points, columns, turning, turned }
     }
 
     /// Deforms at most 64 points, whose weights are in `blocks`; [`Scratch::unsound`] then has the lanes to do again.
@@ -128,23 +172,28 @@ impl LaneHandles {
         assert!(
             n <= BATCH && x.len() == 3 * n && y.len() == 3 * n && (maps.is_empty() || maps.len() == 9 * n)
         );
-        let blocks = blocks.take(n.div_ceil(LANES)).enumerate();
-        for (block, rows) in blocks.clone() {
-            moments::look_up(rows, &self.points, block, scratch);
-        }
-        for (block, rows) in blocks {
-            let linear = &self.anchor.linear;
+        let (simd, columns, linear) = (self.simd, &self.columns, &self.anchor.linear);
+        for (block, rows) in blocks.take(n.div_ceil(LANES)).enumerate() {
             match self.transform {
-                Transform::Rigid => moments::rigid(self.simd, rows, &self.points, block, scratch),
-                Transform::Similarity => moments::similarity(self.simd, rows, &self.points, block, scratch),
-                Transform::Affine => moments::affine(self.simd, rows, &self.points, linear, block, scratch),
+                Transform::Rigid => moments::rigid(simd, rows, &self.points, columns, block, scratch),
+                Transform::Similarity => {
+                    moments::similarity(simd, rows, &self.points, columns, block, scratch)
+                }
+                Transform::Affine => {
+                    moments::affine(simd, rows, &self.points, columns, linear, block, scratch)
+                }
             }
             if !self.turned.is_empty() {
-                turned::add(self.simd, rows, &self.turned, self.transform, linear, block, scratch);
+                turned::add(simd, rows, &self.turned, self.transform, linear, block, scratch);
             }
         }
-        finish(self.simd, self.transform, &self.anchor, !self.turned.is_empty(), scratch);
-        land(self.simd, &self.frame, scratch, x, y);
+        if self.transform != Transform::Affine {
+            rotate(simd, &self.turning, scratch);
+        }
+        if self.transform != Transform::Rigid {
+            finish(simd, self.transform, linear, !self.turned.is_empty(), scratch);
+        }
+        landing::land(simd, &self.frame, scratch, x, y);
         for (lane, map) in maps.chunks_exact_mut(9).enumerate() {
             let identity: Matrix<3> = identity();
             for (k, one) in identity.as_flattened().iter().enumerate() {
@@ -154,55 +203,51 @@ impl LaneHandles {
     }
 }
 
+/// From moments to `R - I`.
+fn rotate(simd: Simd, anchor: &Turning, scratch: &mut Scratch) {
+    let Scratch { moment, start, turn, change, sound, .. } = scratch;
+    round(simd, moment, &mut start.moment);
+    start::start(simd, &anchor.matrix, start);
+    rotation::rotations(simd, moment, start, anchor, turn, change, sound);
+}
+
 multiversion_loops! {
-    /// From moments to `M - I`.
-    fn finish(transform: Transform, anchor: &Anchor<3>, turned: bool, scratch: &mut Scratch) = finish_body
+    /// Rounds to single precision, nothing to less than [`LEAST`].
+    fn round(numbers: &[Lane; 9], singles: &mut [Singles; 9]) = round_body
+}
+
+/// Numbers below 1e-38 cost a hundred times as much as others.
+const LEAST: f64 = 1e-17;
+
+#[inline(always)]
+fn round_body<const FMA: bool>(numbers: &[Lane; 9], singles: &mut [Singles; 9]) {
+    for (single, number) in
+        singles.as_flattened_mut().as_flattened_mut().iter_mut().zip(numbers.as_flattened())
+    {
+        *single = (*number + LEAST) as f32;
+    }
+}
+
+multiversion_loops! {
+    /// From rotations to similarities, or from moments to affine maps.
+    fn finish(transform: Transform, linear: &Matrix<3>, turned: bool, scratch: &mut Scratch) = finish_body
 }
 
 #[inline(always)]
 fn finish_body<const FMA: bool>(
     transform: Transform,
-    anchor: &Anchor<3>,
+    linear: &Matrix<3>,
     turned: bool,
     scratch: &mut Scratch,
 ) {
-    let Scratch { moment, extent, added, turn, change, sound, .. } = scratch;
-    match transform {
-        Transform::Rigid => rotation::rotations::<FMA>(moment, &anchor.rotation, turn, change, sound),
-        Transform::Similarity => {
-            rotation::rotations::<FMA>(moment, &anchor.rotation, turn, change, sound);
-            if turned {
-                turned::align::<FMA>(added, change, moment);
-            }
-            linear::scale::<FMA>(moment, &extent[0], change, sound);
-        }
-        Transform::Affine => linear::affine::<FMA>(moment, extent, &anchor.linear, change, sound),
+    let Scratch { moment, extent, added, change, sound, .. } = scratch;
+    if transform == Transform::Affine {
+        return linear::affine::<FMA>(moment, extent, linear, change, sound);
     }
-}
-
-multiversion_loops! {
-    /// Moves the points.
-    fn land(frame: &Frame, scratch: &Scratch, x: &[f64], y: &mut [f64]) = land_body
-}
-
-#[inline(always)]
-fn land_body<const FMA: bool>(frame: &Frame, scratch: &Scratch, x: &[f64], y: &mut [f64]) {
-    let inverse = 1.0 / frame.half;
-    let Scratch { p_mean, shift, change, .. } = scratch;
-    for (lane, (x, y)) in x.chunks_exact(3).zip(y.chunks_exact_mut(3)).enumerate().take(BATCH) {
-        let arm: [f64; 3] = [
-            (x[0] - frame.centre[0]) * inverse - p_mean[0][lane],
-            (x[1] - frame.centre[1]) * inverse - p_mean[1][lane],
-            (x[2] - frame.centre[2]) * inverse - p_mean[2][lane],
-        ];
-        for r in 0..3 {
-            let mut moved = shift[r][lane];
-            for c in 0..3 {
-                moved = multiply_add::<FMA>(change[3 * r + c][lane], arm[c], moved);
-            }
-            y[r] = multiply_add::<FMA>(frame.half, moved, x[r]);
-        }
+    if turned {
+        turned::align::<FMA>(added, change, moment);
     }
+    linear::scale::<FMA>(moment, &extent[0], change, sound);
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! Against the twin, one point at a time in double precision, on every instruction set of this machine.
 
 use super::super::moments::Moments;
-use super::super::{matrix, Handles, Local};
+use super::super::rotation::anchored;
+use super::super::{best_rotation, matrix, Handles, Local};
 use super::*;
 use crate::simd::loops;
 use crate::softmax::{relative_weights, PackedWeights};
@@ -237,6 +238,55 @@ fn points_on_control_points_go_where_those_go() {
         lanes.deform(PackedWeights::new(&given.logits, 8, t, None).blocks(0), points, &mut Scratch::new());
         for (i, y) in y.chunks(3).enumerate() {
             assert!(y.iter().zip(q[i % 8]).all(|(a, b)| (a - b).abs() < 1e-12), "T = {t}: {y:?}");
+        }
+    }
+}
+
+/// A rotation, as random as its nine numbers.
+fn any_rotation(random: &mut Random) -> Matrix<3> {
+    let rows = random.points(3);
+    best_rotation(&[rows[0], rows[1], rows[2]])
+}
+
+#[test]
+fn rotations_are_those_of_double_precision_at_every_gap() {
+    let mut random = Random(5);
+    for gap in [1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5] {
+        for mirrored in [false, true] {
+            let g = any_rotation(&mut random);
+            let moments: Vec<Matrix<3>> = (0..BATCH)
+                .map(|_| {
+                    let (u, v, size) = (
+                        any_rotation(&mut random),
+                        any_rotation(&mut random),
+                        10f64.powf(4.0 * random.next()),
+                    );
+                    let s2 = if mirrored { 0.4 } else { gap * (0.75 + 0.25 * random.next()) };
+                    let s = [size, size * s2, size * (gap - s2)];
+                    std::array::from_fn(|r| {
+                        std::array::from_fn(|c| (0..3).map(|k| s[k] * u[r][k] * v[c][k]).sum())
+                    })
+                })
+                .collect();
+            for simd in loops::all() {
+                let mut scratch = Scratch::new();
+                for (lane, moment) in moments.iter().enumerate() {
+                    for k in 0..9 {
+                        scratch.moment[k][lane] = moment[k / 3][k % 3];
+                    }
+                }
+                rotate(simd, &Turning::new(g), &mut scratch);
+                for (lane, moment) in moments.iter().enumerate() {
+                    let case = format!("{simd:?}, gap {gap}, mirrored {mirrored}, lane {lane}");
+                    assert!(mirrored || scratch.sound[lane] == 1.0, "{case}");
+                    let right = anchored(moment, &g);
+                    for k in 0..9 {
+                        let one = if k % 4 == 0 { 1.0 } else { 0.0 };
+                        let error = (scratch.change[k][lane] + one - right[k / 3][k % 3]).abs();
+                        assert!(scratch.sound[lane] == 0.0 || error < 1e-9, "{case}: {error}");
+                    }
+                }
+            }
         }
     }
 }
