@@ -19,6 +19,7 @@ from neuralmls.experiments.methods import Surface
 from neuralmls.experiments.poses import Poses
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 BEND = 1.6  # of every joint, in what its bone says
 ALIKE = 0.8  # of a bend, in paired poses: what left and right have in common
 SPACING = 1 / 48  # of the grid on which a level set is found, in longest sides
@@ -35,6 +36,11 @@ class Bone:
     tail: Array
     radii: tuple[float, float]
     bend: float
+
+    def nearest(self, x: Array) -> Array:
+        """The point of the axis that is nearest to a point."""
+        along = self.tail - self.head
+        return np.asarray(self.head + np.clip((x - self.head) @ along / (along @ along), 0, 1) * along)
 
 
 class Skeleton:
@@ -276,20 +282,40 @@ KINDS: dict[str, tuple[Callable[[np.random.Generator], Skeleton], Callable[[Skel
 }
 
 
-def _stiff(skeleton: Skeleton, rest: Surface) -> Array:
-    """Each box follows its own bone."""
-    count = len(skeleton.bones)
-    return np.repeat(np.eye(count), len(rest.positions) // count, axis=0)
-
-
 def creature(
     kind: str, seed: int, turned: Callable[[Skeleton, np.random.Generator], Turned] = free, poses: int = 4
 ) -> Poses:
     """Return one of a kind, at rest and in random poses."""
+    skeleton, rest, rng = _made(kind, seed)
+    skin = _skin(kind, skeleton, rest)
+    moved = [skeleton.pose(rest.positions, skin, turned(skeleton, rng)) for _ in range(poses)]
+    return Poses(f"{kind} {seed} {turned.__name__}", rest, np.stack(moved))
+
+
+def inside(
+    kind: str, seed: int, turned: Callable[[Skeleton, np.random.Generator], Turned], chosen: Indices, poses: int = 4
+) -> tuple[Array, Array]:
+    """Return points half way from vertices to the axes of their bones: at rest (m, 3), in the poses of `creature`."""
+    skeleton, rest, rng = _made(kind, seed)
+    skin = _skin(kind, skeleton, rest)[chosen]
+    points = rest.positions[chosen]
+    for number, bone in enumerate(skin.argmax(axis=1)):
+        points[number] = (points[number] + skeleton.bones[bone].nearest(points[number])) / 2
+    moved_skin = skin if KINDS[kind][1] is boxes else skeleton.skin(points)
+    return points, np.stack([skeleton.pose(points, moved_skin, turned(skeleton, rng)) for _ in range(poses)])
+
+
+def _made(kind: str, seed: int) -> tuple[Skeleton, Surface, np.random.Generator]:
+    """The skeleton, its surface, and what the poses are drawn from."""
     make, surface = KINDS[kind]
     rng = np.random.default_rng([seed, *kind.encode()])
     skeleton = make(rng)
-    rest = surface(skeleton)
-    skin = skeleton.skin(rest.positions) if surface is level_set else _stiff(skeleton, rest)
-    moved = [skeleton.pose(rest.positions, skin, turned(skeleton, rng)) for _ in range(poses)]
-    return Poses(f"{kind} {seed} {turned.__name__}", rest, np.stack(moved))
+    return skeleton, surface(skeleton), rng
+
+
+def _skin(kind: str, skeleton: Skeleton, rest: Surface) -> Array:
+    """How much each bone moves each vertex; each box follows its own bone."""
+    if KINDS[kind][1] is not boxes:
+        return skeleton.skin(rest.positions)
+    count = len(skeleton.bones)
+    return np.repeat(np.eye(count), len(rest.positions) // count, axis=0)

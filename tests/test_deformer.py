@@ -60,6 +60,21 @@ def test_maps_are_returned_when_asked():
     assert np.allclose(maps, np.eye(3)[[1, 2, 0]], atol=1e-6)
 
 
+def test_a_network_is_bound_as_anything_else_with_its_logits_is():
+    x, (p, q) = RNG.uniform(-1, 1, (3000, 3)), RNG.uniform(-1, 1, (2, 5, 3))
+    network = nm.NeuralWeights.fit(p, bounds=[[-1] * 3, [1] * 3], width=64)
+
+    class Same:
+        control_points = p
+
+        def logits(self, x, progress=None):
+            return network.logits(x)
+
+    for temperature in (0.3, 1.0):
+        expected = nm.Deformer(x, Same()).deform(q, temperature)
+        assert np.array_equal(nm.Deformer(x, network).deform(q, temperature), expected)
+
+
 def test_a_tree_of_the_points_stands_in_for_them():
     x = RNG.uniform(-1, 1, (5000, 3))
     p, q = RNG.uniform(-1, 1, (2, 5, 3))

@@ -72,6 +72,15 @@ def test_a_leg_that_is_a_box_of_its_own_belongs_to_its_seat() -> None:
     assert along(x, faces, (-0.16, 0, 0), (-1, 0, 0.9)) == pytest.approx(0.9 + 0.84, abs=0.15)
 
 
+def test_a_control_point_in_a_body_is_near_every_side_of_it() -> None:
+    x, faces = soup([box((-1, -0.5, -0.12), (1, 0.5, 0.12))])
+    below = (0, 0, -0.03)
+    assert along(x, faces, below, (0, 0, -0.12)) == pytest.approx(0.09, abs=SPACING / 2)
+    assert along(x, faces, below, (0, 0, 0.12)) == pytest.approx(0.15, abs=SPACING / 2)
+    # One on the surface is as far from the other side as the way around.
+    assert along(x, faces, (0, 0, -0.12), (0, 0, 0.12)) > 1
+
+
 def test_parts_that_touch_nowhere_are_reached_from_their_nearest() -> None:
     x, faces = soup([box((-1, -0.1, -0.1), (-0.5, 0.1, 0.1)), box((0.3, -0.1, -0.1), (1, 0.1, 0.1))])
     # The one link is between any two of the nearest nodes: at most from corner to corner.

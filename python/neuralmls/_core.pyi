@@ -88,6 +88,15 @@ class Deformer:
         logits: NDArray[np.float32],
         transform: str,
     ) -> Deformer: ...
+    @staticmethod
+    def of_network(
+        x: NDArray[np.float64],
+        p: NDArray[np.float64],
+        network: Network,
+        tree: PointTree | None,
+        transform: str,
+        progress: _Progress,
+    ) -> Deformer: ...
     def prepare(self, temperature: float) -> None: ...
     def deform(
         self,

@@ -74,14 +74,18 @@ class Deformer:
             raise ArgumentError(f"transform: expected 'rigid', 'similarity' or 'affine', found {transform!r}")
         p = as_points("control_points", weights.control_points)
         points = as_points("x", x, p.shape[1])
+        self._weights, self._transform = weights, transform
+        self._p = p
+        self._count = len(points)
+        bind = getattr(weights, "_bind", None)
+        if bind:
+            self._core = bind(x, points, transform, progress)
+            return
         logits = np.ascontiguousarray(
             weights.logits(x if isinstance(x, PointTree) else points, progress=progress), dtype=np.float32
         )
         if logits.shape != (len(points), len(p)):
             raise ArgumentError(f"logits: expected shape {(len(points), len(p))}, found {logits.shape}")
-        self._weights, self._transform = weights, transform
-        self._p = p
-        self._count = len(points)
         self._core = _core.Deformer(points, p, logits, transform)
 
     @cached_property

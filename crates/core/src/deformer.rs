@@ -4,7 +4,7 @@ use crate::error::{check_points, Error};
 use crate::frame::Frame;
 use crate::mls::lanes::{BatchPoints, LaneHandles, Scratch, BATCH};
 use crate::mls::{check_turns, turned, Handles, Transform};
-use crate::parallel::{any_block, for_each_block, for_each_block_pair};
+use crate::parallel::{any, for_each_block, for_each_block_pair};
 use crate::progress::{report, Progress};
 use crate::softmax::{check_temperature, relative_weights, PackedWeights};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -83,7 +83,7 @@ impl Deformer {
             let message = format!("expected {n} x {m} logits, found {}", logits.len());
             return Err(Error::argument("logits", message));
         }
-        if any_block(&logits, 1 << 14, |block| block.iter().fold(false, |found, l| found | l.is_nan())) {
+        if any(&logits, |l| l.is_nan()) {
             let at = logits.iter().position(|l| l.is_nan()).unwrap_or_default();
             return Err(Error::argument("logits", format!("the one at ({}, {}) is NaN", at / m, at % m)));
         }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::parallel::any_block;
+use crate::parallel::any;
 
 /// What can go wrong; each says it in one sentence.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,8 +43,7 @@ pub(crate) fn check_points(name: &'static str, points: &[f64], dim: usize) -> Re
     if !points.len().is_multiple_of(dim) {
         return Err(Error::argument(name, format!("{} numbers are not whole points of {dim}", points.len())));
     }
-    // Sooner said of many together than of each in turn.
-    if any_block(points, 1 << 14, |block| block.iter().fold(false, |found, c| found | !c.is_finite())) {
+    if any(points, |c| !c.is_finite()) {
         let at = points.iter().position(|c| !c.is_finite()).unwrap_or_default();
         return Err(Error::argument(name, format!("point {} has a coordinate that is not finite", at / dim)));
     }

@@ -4,6 +4,7 @@
 //! keeps its millimetres.
 
 use crate::error::{check_points, Error};
+use crate::parallel::of_blocks;
 
 /// `x_normalised = (x - centre) / half`: the box's longest side becomes [-1, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,26 +47,40 @@ impl Frame {
 
     /// The frame of the box around `points`; around one place, a frame of half a side of 1 there.
     pub fn around(points: &[f64], dim: usize) -> Frame {
+        /// Whole points of any dimension, at all of whose coordinates the processor looks at once.
+        const SEVERAL: usize = 12;
+        type Ends = ([f64; SEVERAL], [f64; SEVERAL]);
+        let both = |(mut least, mut most): Ends, (l, m): Ends| {
+            for k in 0..SEVERAL {
+                least[k] = if l[k] < least[k] { l[k] } else { least[k] };
+                most[k] = if m[k] > most[k] { m[k] } else { most[k] };
+            }
+            (least, most)
+        };
+        let ends = of_blocks(
+            points,
+            SEVERAL << 10,
+            |block| {
+                let several = block.chunks_exact(SEVERAL);
+                let mut ends = ([f64::INFINITY; SEVERAL], [f64::NEG_INFINITY; SEVERAL]);
+                for (k, &c) in several.remainder().iter().enumerate() {
+                    (ends.0[k], ends.1[k]) = (c, c);
+                }
+                several.fold(ends, |ends, points| {
+                    let points = points.try_into().expect("chunks of this size");
+                    both(ends, (points, points))
+                })
+            },
+            both,
+        );
+        let Some((least, most)) = ends else {
+            return Frame::IDENTITY;
+        };
         let mut min = [f64::INFINITY; 3];
         let mut max = [f64::NEG_INFINITY; 3];
-        // Whole points of any dimension, at all of whose coordinates the processor looks at once.
-        let (mut least, mut most) = ([f64::INFINITY; 12], [f64::NEG_INFINITY; 12]);
-        let several = points.chunks_exact(12);
-        for (k, &c) in several.remainder().iter().enumerate() {
-            (least[k], most[k]) = (c, c);
-        }
-        for points in several {
-            for k in 0..12 {
-                least[k] = if points[k] < least[k] { points[k] } else { least[k] };
-                most[k] = if points[k] > most[k] { points[k] } else { most[k] };
-            }
-        }
         for (k, (least, most)) in least.into_iter().zip(most).enumerate() {
             min[k % dim] = min[k % dim].min(least);
             max[k % dim] = max[k % dim].max(most);
-        }
-        if points.is_empty() {
-            return Frame::IDENTITY;
         }
         Frame::of_box(&min[..dim], &max[..dim]).unwrap_or_else(|_| {
             let mut centre = [0.0; 3];
@@ -104,6 +119,25 @@ mod tests {
         let frame = Frame::of_box(&[500_000.0, 0.0], &[500_004.0, 2.0]).unwrap();
         assert_eq!(frame.enter::<2>(&[500_004.0, 2.0]), [1.0, 0.5]);
         assert_eq!(frame.enter_all(&[500_000.0, 1.0], 2), [-1.0, 0.0]);
+    }
+
+    #[test]
+    fn is_around_all_points_however_many() {
+        for dim in 1..4 {
+            for n in [5, 4096, 30_001] {
+                let mut points = vec![0.5; n * dim];
+                points[0] = -3.0;
+                *points.last_mut().unwrap() = 7.0;
+                let (mut min, mut max) = (vec![0.5f64; dim], vec![0.5f64; dim]);
+                for (at, c) in points.iter().enumerate() {
+                    min[at % dim] = if at < dim { *c } else { min[at % dim].min(*c) };
+                    max[at % dim] = if at < dim { *c } else { max[at % dim].max(*c) };
+                }
+                let expected = Frame::of_box(&min, &max).unwrap();
+                assert_eq!(Frame::around(&points, dim), expected, "{n} points in {dim}D");
+            }
+        }
+        assert_eq!(Frame::around(&[], 3), Frame::IDENTITY);
     }
 
     #[test]

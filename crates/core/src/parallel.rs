@@ -57,14 +57,25 @@ pub(crate) fn for_each_block_pair<A: Send, B: Send>(
     a.chunks_mut(size_a).zip(b.chunks_mut(size_b)).enumerate().for_each(|(index, (a, b))| work(index, a, b));
 }
 
-/// Whether `test` holds for one of the blocks of `size` elements.
-pub(crate) fn any_block<T: Sync>(of: &[T], size: usize, test: impl Fn(&[T]) -> bool + Sync + Send) -> bool {
+/// What `each` says of the blocks of `size` elements, all of it put together by `both`, in no order; `None` of nothing.
+pub(crate) fn of_blocks<T: Sync, R: Send>(
+    of: &[T],
+    size: usize,
+    each: impl Fn(&[T]) -> R + Sync + Send,
+    both: impl Fn(R, R) -> R + Sync + Send,
+) -> Option<R> {
     #[cfg(feature = "threads")]
     if of.len() > size {
         use rayon::prelude::*;
-        return of.par_chunks(size).any(test);
+        return of.par_chunks(size).map(each).reduce_with(both);
     }
-    of.chunks(size).any(test)
+    of.chunks(size).map(each).reduce(both)
+}
+
+/// Whether `test` holds for one of the elements. (Sooner said of many together than of each in turn.)
+pub(crate) fn any<T: Sync>(of: &[T], test: impl Fn(&T) -> bool + Sync + Send) -> bool {
+    let block = |block: &[T]| block.iter().fold(false, |found, element| found | test(element));
+    of_blocks(of, 1 << 14, block, |a, b| a | b).unwrap_or(false)
 }
 
 /// Calls `work(task, stop)` for each task below `count`, on all threads, each of which takes the next one when it is free. The

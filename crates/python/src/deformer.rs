@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 
 use crate::errors::{argument, from_core};
 use crate::progress::run;
+use crate::weights::{Network, PointTree};
 
 /// Deforms bound points.
 #[pyclass(frozen)]
@@ -55,6 +56,31 @@ impl Deformer {
         let (x, logits) = (copy_of(x), copy_of(logits));
         let inner = neuralmls_core::Deformer::new(x, dim, p, logits, transform)
             .map_err(|error| from_core(error, None))?;
+        Ok(Deformer { inner, dim })
+    }
+
+    /// Binds points to the logits of a network, which are not copied; with a tree of the points, where there is one.
+    #[staticmethod]
+    #[allow(clippy::too_many_arguments)]
+    fn of_network(
+        py: Python<'_>,
+        x: PyReadonlyArray2<'_, f64>,
+        p: PyReadonlyArray2<'_, f64>,
+        network: &Network,
+        tree: Option<&PointTree>,
+        transform: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Deformer> {
+        let dim = x.shape()[1];
+        let transform = self::transform(transform)?;
+        let (x, p) = (x.as_slice()?, p.as_slice()?);
+        let inner = run(py, progress, |report| {
+            let logits = match tree {
+                Some(tree) => network.0.logits_of_tree(&tree.0, report)?,
+                None => network.0.logits(x, report)?,
+            };
+            neuralmls_core::Deformer::new(copy_of(x), dim, p, logits, transform)
+        })?;
         Ok(Deformer { inner, dim })
     }
 

@@ -47,7 +47,7 @@ pub(crate) fn inverse_distance_logits<'py>(
 
 /// Points ordered for the evaluation of networks of one frame.
 #[pyclass(frozen)]
-pub(crate) struct PointTree(neuralmls_core::PointTree);
+pub(crate) struct PointTree(pub neuralmls_core::PointTree);
 
 #[pymethods]
 impl PointTree {
@@ -67,7 +67,7 @@ impl PointTree {
 
 /// A trained network.
 #[pyclass(frozen)]
-pub(crate) struct Network(neuralmls_core::Network);
+pub(crate) struct Network(pub neuralmls_core::Network);
 
 /// The weight and the bias of a layer.
 type LayerArrays<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray1<f32>>);

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import zipfile
-from typing import Self
+from typing import Self, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +13,7 @@ from neuralmls import _core
 from neuralmls.arrays import Progress, as_points
 from neuralmls.errors import ArgumentError, FileError
 from neuralmls.point_tree import PointTree
+from neuralmls.protocol import Transform
 
 FORMAT = "neuralmls-network-1"
 
@@ -49,6 +50,7 @@ class NetworkWeights:
         """The steps that were trained."""
         return len(self._losses)
 
+    @final
     def logits(self, x: ArrayLike, *, progress: Progress | None = None) -> NDArray[np.float32]:
         """Return the logits of the points `x` (n, d), or of a `PointTree`: (n, m), in the points' own order.
 
@@ -60,6 +62,13 @@ class NetworkWeights:
         if isinstance(x, PointTree):
             return self._network.logits_of_tree(x._core, progress)
         return self._network.logits(as_points("x", x, self._p.shape[1]), progress)
+
+    def _bind(
+        self, x: ArrayLike, points: NDArray[np.float64], transform: Transform, progress: Progress | None
+    ) -> _core.Deformer:
+        """Bind `points`, which are `x`: what `Deformer` does with the logits of any weights, but nothing is copied."""
+        tree = x._core if isinstance(x, PointTree) else None
+        return _core.Deformer.of_network(points, self._p, self._network, tree, transform, progress)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write network and control points as an `.npz` file, which `load` and `numpy.load` read.

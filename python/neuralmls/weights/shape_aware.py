@@ -17,7 +17,7 @@ from neuralmls.weights.surface_graph import SurfaceGraph
 Array = NDArray[np.float64]
 
 # Chosen once, for all shapes, by studies/shape_aware.py; docs/shape-aware.md has the figures.
-POWER = 2.0
+POWER = 2.5
 KEPT = 8.0  # logits below the largest by at most this are kept
 TAIL = 4.0  # lower ones fall as this times a logarithm: weights as a power, which a network can learn
 EXPONENT = 6.0  # of the straight-line distance, where no control point governs
@@ -46,7 +46,7 @@ class ShapeAwareWeights(NetworkWeights):
         seed: int = 0,
         progress: Progress | None = None,
     ) -> ShapeAwareWeights:
-        """Train a network to give the weights `w_i ~ h_i^(2 s) / E_i^(6 (1 - s))` on a shape.
+        """Train a network to give the weights `w_i ~ h_i^(2.5 s) / E_i^(6 (1 - s))` on a shape.
 
         `h_i` is the probability that a random walk over the shape meets control point i, or what it holds around it,
         before the others: over its triangles, across parts that touch or overlap, and from a part that touches none to

@@ -11,10 +11,13 @@ from neuralmls.placement import farthest_of
 from neuralmls.weights.surface_links import CELL, Array, Indices, nearest_to, scipy, surface_links
 
 MOST_SPREAD = 8192  # nodes that `spread` chooses from: every so many-th of more
-ATTACHED = 64  # nodes that a control point is linked to, at most
+MET = 1.5  # times as far as the nearest: the nodes at which a walk meets a control point
+MOST_MET = 64  # such nodes
+AROUND = 2.0  # times: those to which paths lead from it, for one in a body is not on one side of it only
+MOST_AROUND = 512
 FIRM = 1.0  # what links of a control point conduct, a cell away; on a node ten times as much
-HOLD = 0.8  # of the way to the nearest other control point: how far one holds what is nearest to it
-HELD = 4.0  # how firmly, in the middle, by area over the square of that radius
+HOLD = 1.2  # of the way to the nearest other control point: how far one holds what is nearest to it
+HELD = 2.0  # how firmly, in the middle, by area over the square of that radius
 
 
 class Reach(NamedTuple):
@@ -57,15 +60,16 @@ class SurfaceGraph:
         self._links = surface_links(x, faces)
         self.nodes = self._links.nodes
 
-    def first_met(self, p: Array, reach: Reach) -> Array:
+    def first_met(self, p: Array, reach: Reach, *, hold: float = HOLD, held: float = HELD) -> Array:
         """Return the probability that a random walk from each node meets each of `p` (m, d) before the others.
 
         The walk takes a link with a probability proportional to what it conducts: the result is the harmonic function
         `h_i` that is 1 at control point i and 0 at the others, (nodes, m), rows sum to 1. It knows how wide the shape
         is: a walk finds its way from a trunk into a thin leg seldom, and from the leg to the trunk soon.
 
-        A control point is no needle, at which a harmonic function would be infinitely steep: it holds the shape around
-        it, less and less up to 0.8 of the way to the nearest other one (`reach`), and a walk may end wherever it does.
+        A control point is no needle, at which a harmonic function would be infinitely steep: it holds what is nearest
+        to it (`reach`), less and less up to 1.2 of the way to the nearest other one, and a walk may end wherever it
+        does.
 
         Source
         ------
@@ -73,11 +77,11 @@ class SurfaceGraph:
         minimal surfaces and their conjugates", 1993.
         """
         count, m = len(self.nodes), len(p)
-        which, nodes, far = self._attached(p)
+        which, nodes, far = self._attached(p, MET, MOST_MET)
         firm = FIRM * CELL / (far + 0.1 * CELL)
-        radius = HOLD * reach.apart[reach.nearest]
+        radius = hold * reach.apart[reach.nearest]
         around = np.flatnonzero(reach.far < radius)
-        density = HELD / radius[around] ** 2 * (1 - (reach.far[around] / radius[around]) ** 2) ** 2
+        density = held / radius[around] ** 2 * (1 - (reach.far[around] / radius[around]) ** 2) ** 2
         which, nodes = np.append(which, reach.nearest[around]), np.append(nodes, around)
         firm = np.append(firm, density * self._links.areas()[around])
         (a, b), conducts = self._links.ends.T, self._links.conductances
@@ -92,10 +96,13 @@ class SurfaceGraph:
         )
         return np.asarray(factors.solve(sources))
 
-    def reach(self, p: Array) -> Reach:
-        """Return the shortest paths from each node to the nearest of `p` (m, d), and between these."""
+    def reach(self, p: Array, *, around: float = AROUND) -> Reach:
+        """Return the shortest paths from each node to the nearest of `p` (m, d), and between these.
+
+        Those of a control point in the midst of a body lead straight to the surface around it.
+        """
         count, m = len(self.nodes), len(p)
-        which, nodes, _ = self._attached(p)
+        which, nodes, _ = self._attached(p, around, MOST_AROUND)
         links = np.concatenate([_two_steps(self._links.ends, count), np.stack([which + count, nodes], axis=1)])
         a, b = links.T
         ends = np.concatenate([self.nodes, p])
@@ -120,11 +127,11 @@ class SurfaceGraph:
         few = np.arange(0, len(self.nodes), -(-len(self.nodes) // MOST_SPREAD))
         return np.asarray(few[farthest_of(self.nodes[few], count)])
 
-    def _attached(self, p: Array) -> tuple[Indices, Indices, Array]:
-        """Links of points (m, d) to nodes near them, at most half as far again as the nearest, and their lengths."""
-        far, near = nearest_to(self.nodes).query(p, k=min(ATTACHED, len(self.nodes)))
+    def _attached(self, p: Array, times: float, most: int) -> tuple[Indices, Indices, Array]:
+        """Links of points (m, d) to nodes at most so many times as far as the nearest, and their lengths."""
+        far, near = nearest_to(self.nodes).query(p, k=min(most, len(self.nodes)))
         near, far = near.reshape(len(p), -1), far.reshape(len(p), -1)
-        attached = far <= 1.5 * far[:, :1] + 1e-9
+        attached = far <= times * far[:, :1] + 1e-9
         return np.nonzero(attached)[0], near[attached], far[attached]
 
 

@@ -89,18 +89,22 @@ fn pack_body<const FMA: bool>(logits: &[f32], temperature: f64, rows: &mut [Row]
     let m = rows.len() - MORE;
     let scale = std::f64::consts::LOG2_E / temperature;
     let (weights, rest) = rows.split_at_mut(m);
-    let (mut first, mut second, mut index) =
-        ([f32::NEG_INFINITY; LANES], [f32::NEG_INFINITY; LANES], [0u32; LANES]);
     for (i, row) in weights.iter_mut().enumerate() {
         for lane in 0..LANES {
             row.0[lane] = logits[lane * m + i];
         }
+    }
+    // A loop of its own: what was just written number by number is not there yet to be read all at once.
+    let (mut first, mut second, mut index) =
+        ([f32::NEG_INFINITY; LANES], [f32::NEG_INFINITY; LANES], [0u32; LANES]);
+    for (i, row) in weights.iter().enumerate() {
         let at = i as u32;
         for lane in 0..LANES {
             let l = row.0[lane];
             // As `relative_weights` has it: of equal logits, the first is the dominant one.
             let above = l > first[lane];
-            second[lane] = if above { first[lane] } else { second[lane].max(l) };
+            let lower = if l > second[lane] { l } else { second[lane] };
+            second[lane] = if above { first[lane] } else { lower };
             first[lane] = if above { l } else { first[lane] };
             index[lane] = if above { at } else { index[lane] };
         }

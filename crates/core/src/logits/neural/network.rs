@@ -104,8 +104,8 @@ impl Network {
     /// # Errors
     /// [`Error::Cancelled`], or where `x` does not hold finite points of the network's dimension.
     pub fn logits(&self, x: &[f64], progress: &mut Progress<'_>) -> Result<Vec<f32>, Error> {
-        let n = check_points("x", x, self.dim)?;
-        if !self.frequencies.is_empty() || n <= LEAF {
+        if !self.frequencies.is_empty() || x.len() <= LEAF * self.dim {
+            check_points("x", x, self.dim)?;
             return dense::logits(self, x, progress);
         }
         let tree = PointTree::new(x, self.dim, self.frame, &mut |done| progress(0.5 * done))?;

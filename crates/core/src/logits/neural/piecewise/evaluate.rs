@@ -13,14 +13,14 @@ use crate::simd::{Aligned, Simd, WIDTH};
 use crate::tree::{Node, Order, PointTree, LEAF, LEAF_BLOCKS};
 
 /// Nodes of this depth are made from the whole network.
-const DEPTH: usize = 4;
+const DEPTH: usize = 5;
 /// Levels of the tree from a node to those that are made from it; at the bottom there may be one more. A node in between would cost
 /// more than what it saves those below.
-const STEP: u32 = 2;
+const STEP: u32 = 3;
 /// Bytes of one such node at most; where it might be more, its halves are made instead.
 const MOST_PART: usize = 8 << 20;
 /// Bytes of those that one task makes.
-const MOST_GROUP: usize = 8 << 20;
+const MOST_GROUP: u64 = 8 << 20;
 /// Nodes that read rows of layer 2 one after the other, while they are in the cache.
 const GROUP: usize = 8;
 /// Rows of logits, which may be anywhere in memory, that are asked for at a time while a leaf is made. More would be waited for.
@@ -74,19 +74,7 @@ impl Walk<'_> {
     fn all(&self, progress: &mut Progress<'_>) -> Result<(), Error> {
         let (mut tops, mut dense) = (Vec::new(), Vec::new());
         self.find_tops(self.tree.root(), 0, &mut Level::default(), &mut tops, &mut dense);
-        let most = tops.len().div_ceil(threads()).min(GROUP);
-        let mut groups = Vec::new();
-        let mut rest = &tops[..];
-        while !rest.is_empty() {
-            let mut bytes = 0;
-            let fits = rest[..most.min(rest.len())].iter().take_while(|(_, more)| {
-                bytes += more;
-                bytes <= MOST_GROUP
-            });
-            let (group, later) = rest.split_at(fits.count().max(1));
-            groups.push(group);
-            rest = later;
-        }
+        let groups = groups(&tops);
         let tasks = groups.len() + dense.len();
         for_each_task(tasks, 0.0..1.0, progress, |task, stop| match groups.get(task) {
             Some(group) => self.group(group, stop),
@@ -232,6 +220,23 @@ impl Walk<'_> {
         // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
         unsafe { dense::evaluate_places(self.network, self.tree, self.order, places, &self.logits) }
     }
+}
+
+/// Nodes in groups of about as many bytes each: so many groups that none is too large, and that each thread has as many to do.
+fn groups(nodes: &[(Node, usize)]) -> Vec<&[(Node, usize)]> {
+    let all: u64 = nodes.iter().map(|(_, bytes)| *bytes as u64).sum();
+    let count = all.div_ceil(MOST_GROUP).max(nodes.len().div_ceil(GROUP) as u64).max(1);
+    let share = all.div_ceil(count.next_multiple_of(threads() as u64)).max(1);
+    let (mut groups, mut first, mut before) = (Vec::new(), 0, 0);
+    for (at, (_, bytes)) in nodes.iter().enumerate() {
+        let now = before + *bytes as u64;
+        if now / share > before / share || at + 1 == nodes.len() {
+            groups.push(&nodes[first..=at]);
+            first = at + 1;
+        }
+        before = now;
+    }
+    groups
 }
 
 /// The nodes that are made from `node`; a leaf is its own.
