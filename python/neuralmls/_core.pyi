@@ -135,6 +135,7 @@ class Probe:
         logits: NDArray[np.float32],
         own_logits: NDArray[np.float32],
         transform: str,
+        careful: bool,
     ) -> Probe: ...
     @staticmethod
     def points(places: NDArray[np.float64], side: float) -> NDArray[np.float64]: ...

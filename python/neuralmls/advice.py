@@ -63,6 +63,7 @@ def advise(
     adherence: float = 0.0,
     rotations: Rotations = None,
     scales: Scales = None,
+    careful: bool = False,
     names: Sequence[str] | None = None,
 ) -> list[Advice]:
     """Return what is likely bad about a deformation, and what would help; nothing where all control points stay or
@@ -87,6 +88,8 @@ def advise(
     targets : (m, d)
     transform, temperature, adherence, rotations, scales
         As `Deformer` has them.
+    careful : bool
+        Whether the control points go as `ExactHandles.aim_carefully` takes them, and `neuralmls deform`.
     names : sequence of m str, optional
         What to call the control points; p1, p2, ... if not given.
 
@@ -105,7 +108,7 @@ def advise(
     >>> [advice.kind for advice in advise(x, None, weights, [[0.0], [0.7], [0.3], [1.0]])]
     ['folds']
     """
-    probe = Probe(x, faces, weights, targets, transform, rotations=rotations, scales=scales)
+    probe = Probe(x, faces, weights, targets, transform, rotations=rotations, scales=scales, careful=careful)
     named = tuple(f"p{i + 1}" for i in range(len(probe.p))) if names is None else tuple(names)
     if len(named) != len(probe.p):
         raise ArgumentError(f"names: expected {len(probe.p)} of them, found {len(named)}")
@@ -197,7 +200,7 @@ def _shape_aware(probe: Probe, setting: _Setting, kind: str) -> str:
         weights = ShapeAwareWeights.fit(probe.p, probe.x, probe.faces)
     except NeuralMLSError:  # no SciPy, or no size to measure by
         return ""
-    other = Probe(probe.x, probe.faces, weights, probe.q, probe.transform, **probe.carried)
+    other = Probe(probe.x, probe.faces, weights, probe.q, probe.transform, **probe.carried, careful=probe.careful)
     now, then = (
         each.core.parts(each.q, each.turns, setting.temperature, setting.adherence)[kind == "torn"]
         for each in (probe, other)

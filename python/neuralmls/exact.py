@@ -19,16 +19,17 @@ Array: TypeAlias = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Soft:
-    """Why control points are left where plain moving least squares takes them.
+    """Why control points do not arrive.
 
     Attributes
     ----------
     reason : "shared" or "unreached"
-        One has too little of the weight at its own place, or would stay off its target all the same.
+        One has too little of the weight at its own place, so that all are left where plain moving least squares takes
+        them; or they are taken as far as it goes without a jump, and one stays off.
     control_point : int
-        Which one.
+        Which one; of those that stay off, the farthest.
     amount : float
-        The weight that it has there, or the distance that it would stay off.
+        The weight that it has at its own place, or the distance that it stays off.
     """
 
     reason: Literal["shared", "unreached"]
@@ -47,7 +48,7 @@ class Aim:
     misses : (m,) float64
         The distance between where each control point arrives and where it was to go.
     soft : Soft or None
-        Why `ExactHandles.aim_carefully` has left them soft; None where it has not.
+        Why `ExactHandles.aim_carefully` does not take them there; None where it does.
     """
 
     targets: Array
@@ -140,11 +141,13 @@ class ExactHandles:
         rotations: Rotations = None,
         scales: Scales = None,
     ) -> Aim:
-        """Return the effective targets where they are worth it, else the targets themselves, and why.
+        """Return the effective targets where they are worth it, without jumps; else the targets themselves, and why.
 
         Control points are left soft where one has less than 0.25 of the weight at its own place, so that it would be
-        aimed far past its target and the shape would suffer, and where one would not arrive (to 1e-6 of the targets'
-        extent). What `neuralmls deform` and the browser editor do.
+        aimed far past its target and the shape would suffer, or the same weights as another (no affine maps). Where one
+        cannot arrive (to 1e-6 of the targets' extent) all are taken as far as they go by effective targets that move
+        continuously with the targets: those of the mean of the rotations that fit nearly as well as the best at a
+        control point. What `neuralmls deform` and the browser editor do.
 
         Parameters
         ----------

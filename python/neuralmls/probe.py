@@ -35,7 +35,7 @@ class Probe:
     Parameters
     ----------
     x : (n, d), faces : (f, 3) integers or None, weights : Weights, targets : (m, d), transform : Transform
-    rotations : (m, d, d), scales : (m,), optional
+    rotations : (m, d, d), scales : (m,), careful : bool, optional
         As `neuralmls.advise` has them.
 
     Raises
@@ -54,6 +54,7 @@ class Probe:
         *,
         rotations: Rotations = None,
         scales: Scales = None,
+        careful: bool = False,
     ) -> None:
         self.p = as_points("weights.control_points", weights.control_points)
         self.x, self.faces, self.weights, self.transform = as_points("x", x, self.p.shape[1]), faces, weights, transform
@@ -65,16 +66,18 @@ class Probe:
         self.side = 2 * box_around(self.x)[1]
         self.places = _places(self.x, faces)
         self.exact = ExactHandles(weights, transform=transform)
+        self.careful = careful
+        self._aim = self.exact.aim_carefully if careful else self.exact.aim
         self._handles = Deformer(self.p, weights, transform=transform)
         points, own = (
             np.ascontiguousarray(weights.logits(at), np.float32)
             for at in (_core.Probe.points(self.places, self.side), self.p)
         )
-        self.core = _core.Probe(self.p, self.places, self.side, points, own, transform)
+        self.core = _core.Probe(self.p, self.places, self.side, points, own, transform, careful)
 
     def missed(self, temperature: float, adherence: float) -> Array:
         """How far each control point ends from its target, (m,)."""
-        aim = self.exact.aim(self.q, temperature, adherence, **self.carried)
+        aim = self._aim(self.q, temperature, adherence, **self.carried)
         arrived = self._handles.deform(aim.targets, temperature, **self.carried)
         return np.asarray(np.linalg.norm(arrived - self.q, axis=1))
 

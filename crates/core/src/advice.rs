@@ -68,6 +68,7 @@ pub struct Probe {
     /// The places, then for each axis those up and those down of them.
     all: Deformer,
     handles: ExactHandles,
+    careful: bool,
 }
 
 /// What a deformation does at the places.
@@ -143,7 +144,13 @@ impl Probe {
             places: places.to_vec(),
             all: Deformer::new(Probe::points(places, dim, side), dim, p, logits, transform)?,
             handles: ExactHandles::new(p, dim, own_logits, transform)?,
+            careful: false,
         })
+    }
+
+    /// Takes control points to their targets as [`ExactHandles::aim_carefully`] does, not as [`ExactHandles::aim`] does.
+    pub fn careful(self, careful: bool) -> Probe {
+        Probe { careful, ..self }
     }
 
     /// Lets the deformations that are looked at do something else to the shape locally.
@@ -210,7 +217,10 @@ impl Probe {
         adherence: f64,
     ) -> Result<Look, Error> {
         let pose = pose.into();
-        let aim = self.handles.aim(pose, temperature, adherence)?;
+        let aim = match self.careful {
+            true => self.handles.aim_carefully(pose, temperature, adherence)?,
+            false => self.handles.aim(pose, temperature, adherence)?,
+        };
         let aimed = Pose { q: &aim.targets, turns: pose.turns };
         let mut y = self.all.deform(aimed, temperature, false, &mut |_| true)?.positions;
         let (dim, beside) = (self.dim, y.split_off(self.places.len()));

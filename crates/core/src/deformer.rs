@@ -32,6 +32,8 @@ pub struct Deformer {
     p: Vec<f64>,
     logits: Vec<f32>,
     transform: Transform,
+    /// See [`Handles::undecided`].
+    undecided: f64,
     /// The weights of the last frame.
     last: Mutex<Option<Arc<PackedWeights>>>,
 }
@@ -86,7 +88,21 @@ impl Deformer {
             return Err(Error::argument("logits", format!("the one at ({}, {}) is NaN", at / m, at % m)));
         }
         let frame = Frame::around(&x, dim);
-        Ok(Deformer { dim, frame, x, p: p.to_vec(), logits, transform, last: Mutex::new(None) })
+        Ok(Deformer {
+            dim,
+            frame,
+            x,
+            p: p.to_vec(),
+            logits,
+            transform,
+            undecided: 0.0,
+            last: Mutex::new(None),
+        })
+    }
+
+    /// Lets it move points as [`Handles::undecided`] says.
+    pub(crate) fn undecided(self, part: f64) -> Deformer {
+        Deformer { undecided: part, ..self }
     }
 
     /// Points, n.
@@ -190,7 +206,7 @@ impl Deformer {
         };
         let (p, q) = (enter(&self.p), enter(pose.q));
         let turned = pose.turns.map_or_else(Vec::new, |turns| turned(turns, &p));
-        let handles = Handles::with_turned(&p, &q, turned, self.transform);
+        let handles = Handles::with_turned(&p, &q, turned, self.transform).undecided(self.undecided);
         let lanes = handles.lanes(self.frame).map(|lanes| (lanes, self.weights(temperature)));
         let motion =
             Motion { x: &self.x, logits: &self.logits, frame: self.frame, temperature, handles, lanes };

@@ -8,32 +8,41 @@
 //! ```
 //!
 //! by `q' <- q' + (q - f(p; q'))`, with Anderson's acceleration (Anderson 1965; Walker, Ni 2011). The unknowns are the targets alone, so
-//! it costs a few frames of as many points as there are control points. [`ExactHandles::aim_carefully`] does so only where it is worth it.
+//! it costs a few frames of as many points as there are control points. [`ExactHandles::aim_carefully`] does so only where it is worth it, and
+//! without jumps.
 
 use crate::deformer::{Deformer, Pose};
 use crate::error::Error;
 use crate::mls::Transform;
 use crate::softmax;
+use anderson::Guess;
 
-/// Differences that the acceleration looks back on.
-const HISTORY: usize = 6;
-/// Evaluations at most.
-const MOST: usize = 100;
+mod anderson;
+
 /// A handle has arrived when it misses by less than this part of the targets' extent.
 const ARRIVED: f64 = 1e-11;
-/// Halvings of a step that does not help, until no shorter one is tried.
-const HALVINGS: i32 = 8;
 /// With less of the weight at its own place a control point is aimed so far past its target that the shape suffers: of the published
 /// displacements, those with 0.15 or less fold and miss, those with 0.28 or more do neither (docs/beyond-the-paper.md).
 const OWNED: f64 = 0.25;
+/// Two control points have the same weights when each has this much at the other's place, in what it has at its own (product of both): rigid
+/// maps cannot part them. Published displacements with 0.25 of the weight and more: up to 0.40.
+const ALIKE: f64 = 0.7;
 /// For the careful aim a handle has arrived when it misses by no more than this part of the targets' extent.
 const REACHED: f64 = 1e-6;
+/// Two ways to take a handle to a place are the same when they differ by no more than this part of the targets' extent.
+const SAME: f64 = 1e-7;
+/// A careful aim does not rely on a rotation at a control point that is better than others by less than this part of what it is at rest. Of
+/// 0.02, 0.05 and 0.1 this had the fewest drags with jumps, and all of the published displacements still arrive (docs/beyond-the-paper.md).
+const UNDECIDED: f64 = 0.1;
 
 /// The control points as points that are deformed themselves.
 pub struct ExactHandles {
     handles: Deformer,
+    /// The same, but by the mean of the rotations where one is as good as another.
+    decided: Deformer,
     dim: usize,
     p: Vec<f64>,
+    transform: Transform,
 }
 
 /// Where to aim.
@@ -43,16 +52,16 @@ pub struct Aim {
     pub targets: Vec<f64>,
     /// How far each control point stays from where it was to go, m.
     pub misses: Vec<f64>,
-    /// Why a careful aim has left them soft; none where it has not.
+    /// Why a careful aim does not take them there; none where it does.
     pub soft: Option<Soft>,
 }
 
-/// Why control points are left where plain MLS takes them.
+/// Why control points do not arrive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Soft {
-    /// The control point has only so much of the weight at its own place.
+    /// All are left where plain MLS takes them: the control point has only so much of the weight at its own place.
     Shared(usize, f64),
-    /// The control point would stay so far from its target all the same.
+    /// They are taken as far as it goes without a jump; the control point stays so far from where it was to go, the farthest.
     Unreached(usize, f64),
 }
 
@@ -81,13 +90,16 @@ impl ExactHandles {
     /// # Errors
     /// As [`Deformer::new`].
     pub fn new(p: &[f64], dim: usize, logits: Vec<f32>, transform: Transform) -> Result<ExactHandles, Error> {
-        let handles = Deformer::new(p.to_vec(), dim, p, logits, transform)?;
-        Ok(ExactHandles { handles, dim, p: p.to_vec() })
+        let handles = Deformer::new(p.to_vec(), dim, p, logits.clone(), transform)?;
+        let decided = Deformer::new(p.to_vec(), dim, p, logits, transform)?.undecided(UNDECIDED);
+        Ok(ExactHandles { handles, decided, dim, p: p.to_vec(), transform })
     }
 
     /// Lets the control points do something else to the shape locally.
     pub fn set_transform(&mut self, transform: Transform) {
         self.handles.set_transform(transform);
+        self.decided.set_transform(transform);
+        self.transform = transform;
     }
 
     /// What the weight function says of each control point, m x m.
@@ -103,8 +115,13 @@ impl ExactHandles {
         Ok(self.handles.deform(pose, temperature, false, &mut |_| true)?.positions)
     }
 
-    /// [`ExactHandles::aim`] where it is worth it: the targets themselves, and why, where a control point has too little of the
-    /// weight at its own place, or would not arrive.
+    /// [`ExactHandles::aim`] where it is worth it, and without jumps: the targets themselves where a control point has too little of the weight
+    /// at its own place; near them where it would not arrive.
+    ///
+    /// Arms turn at control points, `f(p_i; q') = sum w_k q'_k + M_i (p_i - p*)`. Where a drag takes `M_i` through a half turn there are
+    /// targets that no `q'` reaches, and beside them a `q'` that jumps. So the equation is solved with the mean of the rotations that fit nearly
+    /// as well as the best one. Where that one is better by [`UNDECIDED`] this is the same; elsewhere `q'` goes on smoothly, and
+    /// the control point stays off by no more than its arm.
     ///
     /// # Errors
     /// As [`ExactHandles::aim`].
@@ -115,32 +132,55 @@ impl ExactHandles {
         adherence: f64,
     ) -> Result<Aim, Error> {
         let pose = pose.into();
-        check_adherence(adherence)?;
-        let landed = self.land(pose, temperature)?;
-        let misses = distances(&landed, pose.q, self.dim);
-        let mut soft = Aim { targets: pose.q.to_vec(), misses, soft: None };
+        let goal = self.goal(pose, temperature, adherence)?;
         let reached = REACHED * self.extent(pose.q);
-        let (_, miss) = greatest(soft.misses.iter().copied());
-        if adherence == 0.0 || miss <= reached {
-            return Ok(soft);
-        }
-        let m = soft.misses.len();
-        let mut weights = vec![0.0; m];
-        let (least, lost) = greatest(self.logits().chunks_exact(m).enumerate().map(|(i, logits)| {
-            softmax::weights(logits, temperature, &mut weights);
-            1.0 - weights[i]
-        }));
-        if 1.0 - lost < OWNED {
-            soft.soft = Some(Soft::Shared(least, 1.0 - lost));
-            return Ok(soft);
-        }
-        let aim = self.solve(pose, temperature, adherence, &landed)?;
+        let shared = self.shared(temperature);
+        let mut aim = if adherence == 0.0 || shared.is_some() {
+            let misses = distances(&self.land(pose, temperature)?, &goal, self.dim);
+            Aim { targets: pose.q.to_vec(), misses, soft: None }
+        } else {
+            let aim = self.solve(pose, temperature, &goal, false)?;
+            let landed =
+                self.decided.deform(Pose { q: &aim.targets, ..pose }, temperature, false, &mut |_| true)?;
+            let away = distances(&landed.positions, &goal, self.dim);
+            // Most often this solves the other equation too, and took a tenth of the time.
+            if greatest(away.iter().copied()).1 <= SAME * self.extent(pose.q) {
+                aim
+            } else {
+                self.solve(pose, temperature, &goal, true)?
+            }
+        };
         let (worst, miss) = greatest(aim.misses.iter().copied());
         if miss > reached {
-            soft.soft = Some(Soft::Unreached(worst, miss));
-            return Ok(soft);
+            aim.soft = shared.or(Some(Soft::Unreached(worst, miss)));
         }
         Ok(aim)
+    }
+
+    /// The control point that has too little of the weight at its own place, if there is one. The targets are nothing to it.
+    fn shared(&self, temperature: f64) -> Option<Soft> {
+        let m = self.p.len() / self.dim;
+        let mut w = vec![0.0; m * m];
+        for (w, logits) in w.chunks_exact_mut(m).zip(self.logits().chunks_exact(m)) {
+            softmax::weights(logits, temperature, w);
+        }
+        let own = |i: usize| w[(m + 1) * i];
+        let (least, lost) = greatest((0..m).map(|i| 1.0 - own(i)));
+        if 1.0 - lost < OWNED {
+            return Some(Soft::Shared(least, 1.0 - lost));
+        }
+        let alike = |i: usize| (0..i).any(|k| w[m * i + k] * w[m * k + i] > ALIKE * own(i) * own(k));
+        let one = (0..m).find(|&i| self.transform != Transform::Affine && alike(i))?;
+        Some(Soft::Shared(one, own(one)))
+    }
+
+    /// Where an aim is to take the control points: the part `adherence` of the way from where plain MLS takes them to their targets.
+    fn goal(&self, pose: Pose<'_>, temperature: f64, adherence: f64) -> Result<Vec<f64>, Error> {
+        if !(0.0..=1.0).contains(&adherence) {
+            return Err(Error::argument("adherence", format!("expected 0 to 1, found {adherence}")));
+        }
+        let landed = self.land(pose, temperature)?;
+        Ok(landed.iter().zip(pose.q).map(|(soft, q)| soft + adherence * (q - soft)).collect())
     }
 
     /// What would let a careful aim arrive, tried: half the temperature, else the affine transform.
@@ -173,44 +213,23 @@ impl ExactHandles {
     /// As [`Deformer::deform`]; where the adherence is not from 0 to 1.
     pub fn aim<'a>(&self, pose: impl Into<Pose<'a>>, temperature: f64, adherence: f64) -> Result<Aim, Error> {
         let pose = pose.into();
-        check_adherence(adherence)?;
-        self.solve(pose, temperature, adherence, &self.land(pose, temperature)?)
+        let goal = self.goal(pose, temperature, adherence)?;
+        self.solve(pose, temperature, &goal, false)
     }
 
-    /// [`ExactHandles::aim`], where plain MLS takes the control points to `landed`.
-    fn solve(&self, pose: Pose<'_>, temperature: f64, adherence: f64, landed: &[f64]) -> Result<Aim, Error> {
-        let Pose { q, turns } = pose;
-        let arrive = |targets: &[f64]| self.land(Pose { q: targets, turns }, temperature);
-        let goal: Vec<f64> = landed.iter().zip(q).map(|(soft, q)| soft + adherence * (q - soft)).collect();
-        let rest = |arrived: &[f64]| -> Vec<f64> { goal.iter().zip(arrived).map(|(g, a)| g - a).collect() };
-        let enough = ARRIVED * self.extent(q);
-
-        let mut now = Guess { rest: rest(landed), targets: q.to_vec() };
-        let mut best = now.clone();
-        let mut history = History::default();
-        let mut halvings = 0;
-        for _ in 0..MOST {
-            if best.worst() <= enough || halvings > HALVINGS {
-                break;
-            }
-            let step = history.step(&now.rest);
-            let step = step.iter().map(|s| s * 0.5f64.powi(halvings));
-            let targets: Vec<f64> = now.targets.iter().zip(step).map(|(t, s)| t + s).collect();
-            let next = Guess { rest: rest(&arrive(&targets)?), targets };
-            if next.square() < best.square() {
-                halvings = 0;
-                history.push(&now, &next);
-                best = next.clone();
-                now = next;
-            } else {
-                // What was learned leads astray: from the best again, by a plain and shorter step.
-                halvings += 1;
-                history = History::default();
-                now = best.clone();
-            }
-        }
-        let misses = distances(&best.rest, &vec![0.0; q.len()], self.dim);
-        Ok(Aim { targets: best.targets, misses, soft: None })
+    /// The effective targets where control points are taken to `goal`, or as near as was found, and how far they stay away; `decided`: by
+    /// the equation that is solved without jumps.
+    fn solve(&self, pose: Pose<'_>, temperature: f64, goal: &[f64], decided: bool) -> Result<Aim, Error> {
+        let way = if decided { &self.decided } else { &self.handles };
+        let rest = |targets: &[f64]| -> Result<Vec<f64>, Error> {
+            let arrived =
+                way.deform(Pose { q: targets, ..pose }, temperature, false, &mut |_| true)?.positions;
+            Ok(goal.iter().zip(arrived).map(|(g, a)| g - a).collect())
+        };
+        let start = Guess { rest: rest(pose.q)?, targets: pose.q.to_vec() };
+        let targets = anderson::solve(start, ARRIVED * self.extent(pose.q), decided, rest)?.targets;
+        let misses = distances(&self.land(Pose { q: &targets, ..pose }, temperature)?, goal, self.dim);
+        Ok(Aim { targets, misses, soft: None })
     }
 
     /// The longest side of the box around the control points and the targets.
@@ -225,14 +244,6 @@ impl ExactHandles {
     }
 }
 
-fn check_adherence(adherence: f64) -> Result<(), Error> {
-    if (0.0..=1.0).contains(&adherence) {
-        Ok(())
-    } else {
-        Err(Error::argument("adherence", format!("expected 0 to 1, found {adherence}")))
-    }
-}
-
 /// How far each of the points `a` is from that of `b`.
 fn distances(a: &[f64], b: &[f64], dim: usize) -> Vec<f64> {
     let square = |(a, b): (&[f64], &[f64])| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
@@ -242,75 +253,6 @@ fn distances(a: &[f64], b: &[f64], dim: usize) -> Vec<f64> {
 /// The greatest value, the first of equals, and where it is.
 pub(crate) fn greatest(values: impl Iterator<Item = f64>) -> (usize, f64) {
     values.enumerate().fold((0, f64::NEG_INFINITY), |most, (i, v)| if v > most.1 { (i, v) } else { most })
-}
-
-/// Targets that were tried, and what they leave.
-#[derive(Clone)]
-struct Guess {
-    targets: Vec<f64>,
-    rest: Vec<f64>,
-}
-
-impl Guess {
-    fn worst(&self) -> f64 {
-        self.rest.iter().fold(0.0, |worst, r| r.abs().max(worst))
-    }
-
-    fn square(&self) -> f64 {
-        self.rest.iter().map(|r| r * r).sum()
-    }
-}
-
-/// The last differences of targets and rests.
-#[derive(Default)]
-struct History {
-    targets: Vec<Vec<f64>>,
-    rests: Vec<Vec<f64>>,
-}
-
-impl History {
-    fn push(&mut self, before: &Guess, after: &Guess) {
-        let difference = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect();
-        if self.rests.len() == HISTORY {
-            self.targets.remove(0);
-            self.rests.remove(0);
-        }
-        self.targets.push(difference(&after.targets, &before.targets));
-        self.rests.push(difference(&after.rest, &before.rest));
-    }
-
-    /// The step to take: the rest, less what the differences explain of it, which they know a better step for.
-    ///
-    /// `rest - (dT + dR) gamma`, `gamma` minimising `|rest - dR gamma|`.
-    fn step(&self, rest: &[f64]) -> Vec<f64> {
-        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-        let mut step = rest.to_vec();
-        // Gram and Schmidt on the differences, the newest first, each with what it does to the targets.
-        let mut basis: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
-        for (target, rest_difference) in self.targets.iter().zip(&self.rests).rev() {
-            let (mut t, mut r) = (target.clone(), rest_difference.clone());
-            let length = dot(&r, &r);
-            for (bt, br) in &basis {
-                let along = dot(&r, br);
-                r.iter_mut().zip(br).for_each(|(r, b)| *r -= along * b);
-                t.iter_mut().zip(bt).for_each(|(t, b)| *t -= along * b);
-            }
-            let left = dot(&r, &r);
-            if left <= 1e-20 * length || left == 0.0 {
-                continue; // says nothing new
-            }
-            let scale = left.sqrt().recip();
-            r.iter_mut().chain(&mut t).for_each(|v| *v *= scale);
-            basis.push((t, r));
-        }
-        for (t, r) in &basis {
-            let along = dot(rest, r);
-            for ((step, t), r) in step.iter_mut().zip(t).zip(r) {
-                *step -= along * (t + r);
-            }
-        }
-        step
-    }
 }
 
 #[cfg(test)]

@@ -39,6 +39,7 @@ impl Probe {
         logits: PyReadonlyArray2<'_, f32>,
         own_logits: PyReadonlyArray2<'_, f32>,
         transform: &str,
+        careful: bool,
     ) -> PyResult<Probe> {
         let dim = p.shape()[1];
         neuralmls_core::advice::Probe::new(
@@ -50,7 +51,7 @@ impl Probe {
             own_logits.as_slice()?.to_vec(),
             self::transform(transform)?,
         )
-        .map(|probe| Probe { probe, dim })
+        .map(|probe| Probe { probe: probe.careful(careful), dim })
         .map_err(|error| from_core(error, None))
     }
 

@@ -11,7 +11,7 @@ use crate::errors::from_core;
 #[pyclass(frozen)]
 pub(crate) struct ExactHandles(neuralmls_core::ExactHandles);
 
-/// Effective targets m x d, how far each control point stays from where it was to go, and why they were left soft: a reason, which
+/// Effective targets m x d, how far each control point stays from where it was to go, and why they do not arrive: a reason, which
 /// control point, how much.
 type Aim<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, Option<(&'static str, usize, f64)>);
 

@@ -139,22 +139,18 @@ impl Fit {
         adherence: f64,
     ) -> Result<Array, JsError> {
         let pose = Pose { q, turns: turns.as_deref() };
-        let used = match self.control_points.aimed(pose, transform, temperature, adherence)?.soft {
-            None => adherence,
-            Some(_) => 0.0,
-        };
         if self.probe.is_none() {
             let points = Probe::points(places, self.dim, self.side);
             let logits = self.weights.logits(&points, None, &mut |_| true).map_err(refused)?;
             let own = self.control_points.logits().to_vec();
             let probe =
                 Probe::new(&self.weights.p, self.dim, places, self.side, logits, own, Transform::Rigid);
-            self.probe = Some(probe.map_err(refused)?);
+            self.probe = Some(probe.map_err(refused)?.careful(true));
         }
         let result = Array::new();
         if let Some(probe) = &mut self.probe {
             probe.set_transform(named(transform)?);
-            for advice in probe.advise(pose, temperature, used).map_err(refused)? {
+            for advice in probe.advise(pose, temperature, adherence).map_err(refused)? {
                 let (kind, amount) = match advice.kind {
                     Kind::Folds(part) => ("folds", part),
                     Kind::Torn(stretch) => ("torn", stretch),

@@ -21,7 +21,8 @@ impl Handles {
         Handles::of(p, dim, own_logits).map_err(refused)
     }
 
-    /// Where to aim for the targets `q` (m x dim), turned by `turns` (m x dim x dim, NaN for those that are not; undefined: none is): `q` itself where the control points are left soft.
+    /// Where to aim for the targets `q` (m x dim), turned by `turns` (m x dim x dim, NaN for those that are not; undefined: none is): as
+    /// [`ExactHandles::aim_carefully`] has it.
     ///
     /// # Errors
     /// Where `q` does not fit, or a number is out of its range.
@@ -37,8 +38,8 @@ impl Handles {
         Ok(Float64Array::from(&self.aimed(pose, transform, temperature, adherence)?.targets[..]))
     }
 
-    /// Where the control points land when they are pulled to `q` (m x dim); then, where they are left soft in spite of the adherence:
-    /// "shared" or "unreached", the control point to blame, how much, and what helps: "affine", a temperature, or null.
+    /// Where the control points land when they are pulled to `q` (m x dim); then, where they do not arrive as the adherence says:
+    /// "shared" (they are left soft) or "unreached", the control point to blame, how much, and what helps: "affine", a temperature, or null.
     ///
     /// # Errors
     /// As [`Handles::aim`].

@@ -60,7 +60,7 @@ export interface State {
   comparisonFit: FitState;
   /** How far each control point ends from its target, in file units. */
   distances: ReadonlyMap<PointId, number>;
-  /** Why control points are left soft though more adherence is set, and which one is to blame. */
+  /** Why control points do not arrive as the adherence says, and which one is to blame. */
   soft: (Soft & { id: PointId }) | null;
   /** What is likely bad about the shape as it is, and the control points that it is about. */
   advice: readonly (Advice & { ids: PointId[] })[];

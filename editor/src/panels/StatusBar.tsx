@@ -23,7 +23,7 @@ export function StatusBar() {
       {away.length > 0 && (
         <span title="The largest distance of a control point from its target">
           {arrived(farthest, size) ? "on target" : `off target by at most ${distance(farthest, size)} (${percent(farthest / size)})`}
-          {soft ? ", left soft" : ""}
+          {soft?.reason === "shared" ? ", left soft" : ""}
         </span>
       )}
       {advice.length > 0 && <span>worth a look: {advice.map(({ kind }) => WORDS[kind]).join(", ")}</span>}

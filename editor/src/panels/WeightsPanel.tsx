@@ -87,8 +87,8 @@ function ExactHandles() {
 function whySoft({ reason, amount, remedy }: Soft, name: string, size: number): string {
   const why =
     reason === "shared"
-      ? `${name} has only ${amount.toPrecision(2)} of the weight at its own place`
-      : `${name} would stay ${distance(amount, size)} off its target`;
+      ? `Left soft: ${name} has only ${amount.toPrecision(2)} of the weight at its own place`
+      : `${name} stays ${distance(amount, size)} off`;
   const help = remedy === null ? "" : remedy === "affine" ? " The affine map takes them there." : ` At temperature ${short(remedy)} they arrive.`;
-  return `Left soft: ${why}.${help}`;
+  return `${why}.${help}`;
 }

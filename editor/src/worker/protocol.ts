@@ -105,7 +105,7 @@ export interface Motion {
 export interface Landed {
   /** m x 3 in file units */
   places: Float64Array<ArrayBuffer>;
-  /** Why they are left soft, if the adherence is above 0 and they are. */
+  /** Why they do not arrive as the adherence says, if they do not. */
   soft: Soft | null;
 }
 

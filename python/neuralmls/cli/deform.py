@@ -122,7 +122,7 @@ def deform(
     if check:
         with stages.stage("check"):
             advice = deformation.advice(source, control_points, result, settings)
-    elif exact:  # which the advice says too
+    else:  # the advice says it too
         sentences += deformation.not_arrived(control_points, source, result)
     for sentence in sentences:
         console.warning(sentence)

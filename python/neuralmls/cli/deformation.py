@@ -30,7 +30,7 @@ class Deformation:
     """A shape's new positions, and how far each control point ended from its target, and from its rotation in degrees.
 
     `off` is NaN for those that carry none; `adherence` is what was used, `kept_soft` why that is 0 where more was asked
-    for.
+    for. `short` is how far each is from where the adherence was to take it, and `remedy` with what it would arrive.
     """
 
     positions: Floats
@@ -40,6 +40,8 @@ class Deformation:
     off: NDArray[np.float64]
     adherence: float
     kept_soft: str | None
+    short: NDArray[np.float64]
+    remedy: str | None
 
 
 def check_size(shape: Shape) -> None:
@@ -107,27 +109,22 @@ def deformed(shape: Shape, points: ControlPoints, settings: Settings, stages: St
         handles = Deformer(points.sources, weights, transform=transform)
         arrived, turned = handles.deform(aimed, temperature, rotations=rotations, scales=scales, return_maps=True)
         missed = np.linalg.norm(arrived - points.targets, axis=1)
-    adherence = settings.adherence if aim.soft is None else 0.0
-    kept_soft = _why_soft(aim, exact, points, settings)
-    return Deformation(y, maps, weights, missed, _off(turned, rotations), adherence, kept_soft)
+        remedy = None
+        if aim.soft is not None:
+            remedy = exact.remedy(points.targets, temperature, settings.adherence, rotations=rotations, scales=scales)
+    kept_soft = _why_soft(aim, remedy, points, settings)
+    adherence = settings.adherence if kept_soft is None else 0.0
+    return Deformation(y, maps, weights, missed, _off(turned, rotations), adherence, kept_soft, aim.misses, remedy)
 
 
-def _why_soft(aim: Aim, exact: ExactHandles, points: ControlPoints, settings: Settings) -> str | None:
-    """Why control points were not taken to their targets, and what would take them there, if that is so."""
-    if aim.soft is None:
+def _why_soft(aim: Aim, remedy: str | None, points: ControlPoints, settings: Settings) -> str | None:
+    """Why control points were left soft, and what would take them to their targets, if that is so."""
+    if aim.soft is None or aim.soft.reason != "shared":
         return None
-    name, amount = points.names[aim.soft.control_point], aim.soft.amount
-    said = (
-        f"'{name}' has only {amount:.2g} of the weight at its own place"
-        if aim.soft.reason == "shared"
-        else f"'{name}' would stay {amount:.3g} off all the same"
-    )
-    remedy = exact.remedy(
-        points.targets, settings.temperature, settings.adherence, rotations=points.rotations, scales=points.scales
-    )
+    said = f"'{points.names[aim.soft.control_point]}' has only {aim.soft.amount:.2g} of the weight at its own place"
     if remedy is not None:
         said += f"; {remedy} they arrive"
-    if aim.soft.reason == "shared" and settings.choice.steps is not None:
+    if settings.choice.steps is not None:
         said += "; without --steps it is trained until they own their places"
     return said
 
@@ -161,15 +158,18 @@ def not_parted(points: ControlPoints, choice: WeightsChoice, result: Deformation
 
 
 def not_arrived(points: ControlPoints, shape: Shape, result: Deformation) -> list[str]:
-    """Warn of control points that were to arrive exactly and do not."""
-    short = [i for i in result.missed.argsort()[::-1] if result.missed[i] > ARRIVED * longest_side(shape)]
-    if not short:
+    """Warn of control points that were to be taken to their targets, as far as the adherence says, and are not."""
+    short = [i for i in result.short.argsort()[::-1] if result.short[i] > ARRIVED * longest_side(shape)]
+    if not short or result.kept_soft is not None:
         return []
-    listed = ", ".join(f"'{points.names[i]}' by {result.missed[i]:.3g}" for i in short[:5])
+    listed = ", ".join(f"'{points.names[i]}' by {result.short[i]:.3g}" for i in short[:5])
     listed += f" and {len(short) - 5} more" if len(short) > 5 else ""
+    help = "move them less, or try a lower temperature or --transform affine"
+    if result.remedy is not None:
+        help = f"{result.remedy} they arrive"
     return [
         f"control points do not arrive exactly: {listed}; their targets contradict each other under this transform: "
-        "move them less, or try a lower temperature or --transform affine"
+        + help
     ]
 
 
@@ -185,5 +185,6 @@ def advice(shape: Shape, points: ControlPoints, result: Deformation, settings: S
         adherence=result.adherence,
         rotations=points.rotations,
         scales=points.scales,
+        careful=settings.careful,
         names=points.names,
     )

@@ -30,7 +30,7 @@ class Settings:
     adherence : float, 0 to 1
         How far control points are taken from where plain moving least squares takes them towards their targets.
     careful : bool
-        Whether control points that this would harm are left soft.
+        Whether control points that this would harm are left soft, and none ever jumps.
     session : str or None
         The file that the settings are from.
     """

@@ -45,6 +45,7 @@ pub struct Handles<'a, const D: usize> {
     turned: Vec<Turned<D>>,
     transform: Transform,
     anchor: Anchor<D>,
+    undecided: f64,
 }
 
 /// The global fit: what a local map follows where the control points around it leave something open.
@@ -91,7 +92,13 @@ impl<'a, const D: usize> Handles<'a, D> {
         let mut residuals = Moments::new(p, q, &equal, dominant, Some(&rotation));
         turned::add(&mut residuals, &turned, &equal, dominant, Some(&rotation));
         let linear = affine::linear(&residuals, &rotation);
-        Handles { p, q, turned, transform, anchor: Anchor { rotation, scale, linear } }
+        Handles { p, q, turned, transform, anchor: Anchor { rotation, scale, linear }, undecided: 0.0 }
+    }
+
+    /// Moves by the mean of the rotations that fit nearly as well as the best one, where that is better than others by less than this
+    /// part of what it is at rest: so the maps have no jumps. 0: by the best one.
+    pub(crate) fn undecided(self, part: f64) -> Self {
+        Handles { undecided: part, ..self }
     }
 
     /// The map that fits all control points with equal weights.
@@ -101,7 +108,7 @@ impl<'a, const D: usize> Handles<'a, D> {
 
     /// The same map for many points at a time, in the coordinates of `frame`'s world; where there is a kernel for it (3D).
     pub(crate) fn lanes(&self, frame: Frame) -> Option<lanes::LaneHandles> {
-        if D != 3 {
+        if D != 3 || (self.undecided > 0.0 && self.transform != Transform::Affine) {
             return None;
         }
         let three =
@@ -126,9 +133,9 @@ impl<'a, const D: usize> Handles<'a, D> {
         let mut moments = Moments::new(self.p, self.q, relative, dominant, base);
         let added = turned::add(&mut moments, &self.turned, relative, dominant, base);
         let map = match self.transform {
-            Transform::Rigid => rotation::anchored(&moments.pq, &self.anchor.rotation),
+            Transform::Rigid => self.rotation(&moments),
             Transform::Similarity => {
-                let rotation = rotation::anchored(&moments.pq, &self.anchor.rotation);
+                let rotation = self.rotation(&moments);
                 added.align(&mut moments, &rotation);
                 let scale = similarity::scale(&moments, &rotation, self.anchor.scale);
                 matrix::scaled(&rotation, scale)
@@ -138,6 +145,20 @@ impl<'a, const D: usize> Handles<'a, D> {
         let arm: [f64; D] = std::array::from_fn(|k| x[k] - moments.p_mean[k]);
         let turned = matrix::apply(&map, &arm);
         Local { displacement: std::array::from_fn(|k| turned[k] - arm[k] + moments.shift[k]), map }
+    }
+
+    /// The rotation that `moments` ask for.
+    fn rotation(&self, moments: &Moments<D>) -> Matrix<D> {
+        let anchor = &self.anchor.rotation;
+        if self.undecided == 0.0 {
+            return rotation::anchored(&moments.pq, anchor);
+        }
+        // A similarity may shrink everything, and still knows how it turns.
+        let shrunk = match self.transform {
+            Transform::Similarity => (matrix::norm(&moments.pq) / matrix::norm(&moments.pp)).min(1.0),
+            _ => 1.0,
+        };
+        rotation::mean(&moments.pq, anchor, &moments.pp, self.undecided * shrunk)
     }
 }
 

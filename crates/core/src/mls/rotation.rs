@@ -12,12 +12,74 @@ use super::ANCHOR_WEIGHT;
 
 /// The rule: the rotation that `moment` (C, at any scale) asks for, with the anchor `g` where it leaves something open.
 pub(super) fn anchored<const D: usize>(moment: &Matrix<D>, g: &Matrix<D>) -> Matrix<D> {
+    best_rotation(&target(moment, g))
+}
+
+/// `C / |C| + 1e-9 G^T`.
+fn target<const D: usize>(moment: &Matrix<D>, g: &Matrix<D>) -> Matrix<D> {
     let size = norm(moment);
     let inverse = if size > 0.0 { 1.0 / size } else { 0.0 };
     let inverse = if inverse.is_finite() { inverse } else { 0.0 };
-    let target =
-        std::array::from_fn(|r| std::array::from_fn(|c| moment[r][c] * inverse + ANCHOR_WEIGHT * g[c][r]));
-    best_rotation(&target)
+    std::array::from_fn(|r| std::array::from_fn(|c| moment[r][c] * inverse + ANCHOR_WEIGHT * g[c][r]))
+}
+
+/// The mean of the rotations that fit `moment` almost as well as the best one: as [`anchored`] where the best one fits better than any
+/// that is turned against it by at least the `part` of what it does at rest (`rest` is the moment matrix of p with itself); no rotation, and
+/// shorter, where it does not.
+///
+/// `sum f_i R(u_i) / sum f_i`, with `u_i` the eigenvectors of Horn's matrix and `f_i = max(0, 1 - (l_1 - l_i) / gap)`, `l_i` their eigenvalues, the
+/// `tr(R C)` of each. Unlike the best rotation it has no jumps: it changes by at most about `1 / gap` times what C changes.
+pub(super) fn mean<const D: usize>(
+    moment: &Matrix<D>,
+    g: &Matrix<D>,
+    rest: &Matrix<D>,
+    part: f64,
+) -> Matrix<D> {
+    let size = norm(moment);
+    let target = target(moment, g);
+    let part = if size > 0.0 { part / size } else { 0.0 };
+    let mut r = [[0.0; D]; D];
+    match D {
+        1 => r[0][0] = 1.0,
+        2 => {
+            let best = best_rotation(&target);
+            let (cos, sin) = (target[0][0] + target[1][1], target[0][1] - target[1][0]);
+            // Of the best and that which is turned by half a turn against it, which cancels it.
+            let gap = part * 2.0 * (rest[0][0] + rest[1][1]);
+            let other = (1.0 - 2.0 * cos.hypot(sin) / gap).max(0.0);
+            r = best.map(|row| row.map(|e| e * (1.0 - other) / (1.0 + other)));
+        }
+        _ => {
+            let (values, vectors) = eigen(horn(&target));
+            let best = greatest(&values);
+            let next = (0..4).filter(|&i| i != best).map(|i| values[i]).fold(f64::MIN, f64::max);
+            // Of symmetric matrices without negative eigenvalues this is the sum of the two lesser ones, twice. Bounded first, which is cheap.
+            let diagonal = || (0..D).map(|k| rest[k][k]);
+            let bound = 2.0 * (diagonal().sum::<f64>() - diagonal().fold(0.0, f64::max));
+            let gap = if values[best] - next >= part * bound { 0.0 } else { part * gap(horn(rest)) };
+            let mut sum = 0.0;
+            for (i, value) in values.iter().enumerate() {
+                // Where the gap is 0 only the best counts.
+                let share = if i == best { 1.0 } else { (1.0 - (values[best] - value) / gap).max(0.0) };
+                if share > 0.0 {
+                    let one = of_quaternion(&unit(&vectors, i));
+                    for (row, one) in r.iter_mut().zip(one) {
+                        row.iter_mut().zip(one).for_each(|(sum, e)| *sum += share * e);
+                    }
+                    sum += share;
+                }
+            }
+            r.iter_mut().flatten().for_each(|e| *e /= sum);
+        }
+    }
+    r
+}
+
+/// By how much the greatest eigenvalue is above the next.
+fn gap(n: [[f64; 4]; 4]) -> f64 {
+    let (mut values, _) = eigen(n);
+    values.sort_by(f64::total_cmp);
+    values[3] - values[2]
 }
 
 /// The rotation `R` that maximises `tr(R C)`.
@@ -43,7 +105,8 @@ pub fn best_rotation<const D: usize>(c: &Matrix<D>) -> Matrix<D> {
 
 /// Its quaternion, in 3D.
 pub(super) fn best_quaternion<const D: usize>(c: &Matrix<D>) -> [f64; 4] {
-    largest_eigenvector(horn(c))
+    let (values, vectors) = eigen(horn(c));
+    unit(&vectors, greatest(&values))
 }
 
 /// Horn's matrix: `tr(R C) = u^T N u` for the rotation of the unit quaternion `u = (w, x, y, z)`.
@@ -58,8 +121,8 @@ fn horn<const D: usize>(s: &Matrix<D>) -> [[f64; 4]; 4] {
     ]
 }
 
-/// Cyclic Jacobi: plane rotations that zero the off-diagonal, accumulated.
-fn largest_eigenvector(mut n: [[f64; 4]; 4]) -> [f64; 4] {
+/// Cyclic Jacobi: plane rotations that zero the off-diagonal, accumulated. The eigenvalues, and the eigenvectors in columns.
+fn eigen(mut n: [[f64; 4]; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
     /// Jacobi converges quadratically: a 4 x 4 matrix is done after 4 to 6 sweeps.
     const MOST_SWEEPS: usize = 24;
     let mut vectors = [[0.0; 4]; 4];
@@ -102,13 +165,17 @@ fn largest_eigenvector(mut n: [[f64; 4]; 4]) -> [f64; 4] {
             break;
         }
     }
-    let mut largest = 0;
-    for i in 1..4 {
-        if n[i][i] > n[largest][largest] {
-            largest = i;
-        }
-    }
-    let u: [f64; 4] = std::array::from_fn(|k| vectors[k][largest]);
+    (std::array::from_fn(|i| n[i][i]), vectors)
+}
+
+/// The first of the greatest.
+fn greatest(values: &[f64; 4]) -> usize {
+    (1..4).fold(0, |most, i| if values[i] > values[most] { i } else { most })
+}
+
+/// A column of `vectors`, of length 1.
+fn unit(vectors: &[[f64; 4]; 4], column: usize) -> [f64; 4] {
+    let u: [f64; 4] = std::array::from_fn(|k| vectors[k][column]);
     let length = u.iter().map(|c| c * c).sum::<f64>().sqrt();
     u.map(|c| c / length)
 }
