@@ -14,6 +14,7 @@ import neuralmls as nm
 QUICK = ("--width", "32", "--steps", "20")
 CLASSIC = ("--weights", "inverse-distance")
 DEFORM = ("deform", "shape.obj", "--points", "points.csv")
+SIX = "name,x,y,z\nfoot,0.5,0,0.5\nside,1,1,0.5\ntop,0.5,2,0.5\na,0,0,1.5\nb,1,2,0\nc,0,2,1.5\n"
 
 
 @pytest.mark.parametrize("weights", [QUICK, CLASSIC])
@@ -292,9 +293,7 @@ def test_control_points_arrive_unless_they_are_to_be_soft(run, here):
 
 
 def test_control_points_that_own_little_are_left_soft_with_what_would_help(run, here):
-    (here / "six.csv").write_text(
-        "name,x,y,z\nfoot,0.5,0,0.5\nside,1,1,0.5\ntop,0.5,2,0.5\na,0,0,1.5\nb,1,2,0\nc,0,2,1.5\n"
-    )
+    (here / "six.csv").write_text(SIX)
     moved = ("deform", "shape.obj", "--points", "six.csv", "--width", "128", "--move", "top=0,0.5,0.2", "--temperature")
     soft = run(*moved, "30", "-o", "soft.obj", "--no-exact")
     ran = run(*moved, "30", "-o", "plain.obj")
@@ -312,6 +311,21 @@ def test_control_points_that_own_little_are_left_soft_with_what_would_help(run, 
     assert told["adherence"] == 0
     assert told["kept_soft"].endswith("; at temperature 5 they arrive")
     assert json.loads(run(*moved, "5", "-o", "cool.obj", "--json").out)["adherence"] == 1
+
+
+def test_control_points_that_cannot_arrive_go_as_far_as_they_can(run, here):
+    (here / "six.csv").write_text(SIX)
+    moved = ("deform", "shape.obj", "--points", "six.csv", "--width", "128", "--move", "a=0,3,0", "--json")
+    soft = json.loads(run(*moved, "--temperature", "2", "-o", "soft.obj", "--no-exact").out)
+    ran = run(*moved, "--temperature", "2", "-o", "far.obj")
+    told = json.loads(ran.out)
+    assert (told["adherence"], told["kept_soft"]) == (1.0, None)
+    stays, stayed = ([point["distance_to_target"] for point in way["control_points"]] for way in (told, soft))
+    assert 0.01 < max(stays) < 0.5 * max(stayed)
+    assert "control points do not arrive exactly: 'a' by " in ran.err
+    # What it says would help does.
+    assert ran.err.endswith(" under this transform: at temperature 1 they arrive\n")
+    assert run(*moved, "--temperature", "1", "-o", "there.obj").err == ""
 
 
 def test_exact_control_points_that_cannot_arrive_are_named(run, here):

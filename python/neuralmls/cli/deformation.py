@@ -164,12 +164,13 @@ def not_arrived(points: ControlPoints, shape: Shape, result: Deformation) -> lis
         return []
     listed = ", ".join(f"'{points.names[i]}' by {result.short[i]:.3g}" for i in short[:5])
     listed += f" and {len(short) - 5} more" if len(short) > 5 else ""
-    help = "move them less, or try a lower temperature or --transform affine"
     if result.remedy is not None:
-        help = f"{result.remedy} they arrive"
+        way_out = f"{result.remedy} they arrive"
+    else:
+        way_out = "move them less, or try a lower temperature or --transform affine"
     return [
-        f"control points do not arrive exactly: {listed}; their targets contradict each other under this transform: "
-        + help
+        "control points do not arrive exactly: "
+        f"{listed}; their targets contradict each other under this transform: {way_out}"
     ]
 
 
