@@ -24,6 +24,7 @@ from benchmarks.setting import Setting
 Definition = Callable[[Setting], Outcome]
 
 ALL: dict[str, Definition] = {
+    "editor": editor.run,  # first: a browser feels what ran before it
     "logits": logits.run,
     "logits-cold": logits_cold.run,
     "logits-growth": logits_growth.run,
@@ -33,7 +34,6 @@ ALL: dict[str, Definition] = {
     "process": process.run,
     "million": million.run,
     "growth": growth.run,
-    "editor": editor.run,
     "exact": exact.run,
     "shape-aware": shape_aware.run,
 }
