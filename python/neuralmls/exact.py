@@ -113,6 +113,9 @@ class ExactHandles:
     ) -> Aim:
         """Return the effective targets for `targets`.
 
+        Where the targets cannot be reached these are the best that were found, which may jump while a target moves;
+        those of `aim_carefully` do not.
+
         Parameters
         ----------
         targets : (m, d)
