@@ -6,11 +6,12 @@ use crate::mls::lanes::{BatchPoints, LaneHandles, Scratch, BATCH};
 use crate::mls::{check_turns, turned, Handles, Transform};
 use crate::parallel::{any, for_each_block, for_each_block_pair};
 use crate::progress::{report, Progress};
+use crate::simd::prefetch;
 use crate::softmax::{check_temperature, relative_weights, PackedWeights};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Points between two reports of progress.
-const CHUNK: usize = 1 << 16;
+const CHUNK: usize = 1 << 18;
 /// Points that one thread takes at a time.
 const BLOCK: usize = 2048;
 
@@ -279,6 +280,11 @@ impl<const D: usize> Motion<'_, D> {
         let (mut scratch, mut unsound) = (Scratch::new(), Vec::new());
         for at in (0..n).step_by(BATCH) {
             let end = n.min(at + BATCH);
+            let next = end..n.min(end + BATCH);
+            if !next.is_empty() {
+                prefetch(&self.x[(first + next.start) * D..(first + next.end) * D]);
+                prefetch(&y[next.start * D..next.end * D]);
+            }
             let x = &self.x[(first + at) * D..(first + end) * D];
             let maps = if maps.is_empty() { &mut [] } else { &mut maps[at * D * D..end * D * D] };
             let points = BatchPoints { x, y: &mut y[at * D..end * D], maps };

@@ -14,18 +14,21 @@ impl Aligned {
     pub(crate) const ZERO: Aligned = Aligned([0.0; WIDTH]);
 }
 
+/// Bytes that the processor fetches at a time.
+const LINE: usize = 64;
+
 /// Tells the processor that these are going to be used soon, where it can be told: by itself it looks no further ahead than the
 /// end of a page of 4 KB.
 #[inline(always)]
-pub(crate) fn prefetch(lanes: &[Aligned]) {
+pub(crate) fn prefetch<T>(numbers: &[T]) {
     #[cfg(target_arch = "x86_64")]
-    for lanes in lanes {
+    for line in numbers.chunks(LINE / size_of::<T>()) {
         use std::arch::x86_64::{_mm_prefetch, _MM_HINT_T0};
         // SAFETY: a prefetch reads and writes nothing.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(lanes.0.as_ptr().cast()) };
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(line.as_ptr().cast()) };
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = lanes;
+    let _ = (numbers, LINE);
 }
 
 /// Sixteen single-precision numbers, and what kernels do with them.

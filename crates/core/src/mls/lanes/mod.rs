@@ -33,7 +33,7 @@ use super::turned::Turned;
 use super::{Anchor, Transform, ANCHOR_WEIGHT};
 use crate::frame::Frame;
 use crate::simd::loops::{multiply_add, multiversion_loops};
-use crate::simd::{Simd, WIDTH};
+use crate::simd::{prefetch, Simd, WIDTH};
 use crate::softmax::{Row, LANES};
 
 /// Points in a batch: enough of them to hide the latency of divisions, few enough to stay in the first cache.
@@ -160,7 +160,7 @@ impl LaneHandles {
         LaneHandles { simd: Simd::detect(), transform, anchor, frame, points, columns, turning, turned }
     }
 
-    /// Deforms at most 64 points, whose weights are in `blocks`; [`Scratch::unsound`] then has the lanes to do again.
+    /// Deforms at most 64 points, whose weights are the first of `blocks`; [`Scratch::unsound`] then has the lanes to do again.
     pub(crate) fn deform<'a>(
         &self,
         blocks: impl Iterator<Item = &'a [Row]> + Clone,
@@ -173,7 +173,9 @@ impl LaneHandles {
             n <= BATCH && x.len() == 3 * n && y.len() == 3 * n && (maps.is_empty() || maps.len() == 9 * n)
         );
         let (simd, columns, linear) = (self.simd, &self.columns, &self.anchor.linear);
+        let mut next_batch = blocks.clone().skip(BATCH / LANES);
         for (block, rows) in blocks.take(n.div_ceil(LANES)).enumerate() {
+            next_batch.next().into_iter().for_each(prefetch);
             match self.transform {
                 Transform::Rigid => moments::rigid(simd, rows, &self.points, columns, block, scratch),
                 Transform::Similarity => {
