@@ -10,11 +10,13 @@
 mod doubles;
 mod lanes;
 pub(crate) mod loops;
+mod numbers;
 
 pub(crate) use doubles::{Doubles, WIDEST};
 pub(crate) use lanes::{prefetch, Aligned, Lanes, Portable, WIDTH};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lanes::{Avx2, Avx512};
+pub(crate) use numbers::{minor, square_of, Numbers};
 
 /// An instruction set that kernels are compiled for. Its values come from [`Simd::detect`] alone, which is what makes
 /// [`multiversion!`] sound.

@@ -3,38 +3,27 @@
 //! As [`super::Lanes`] has them in single precision; but not a fixed number of them, since kernels in double precision run out of registers
 //! long before they run out of lanes.
 
+use super::numbers::{Array, Numbers};
+
 /// The most numbers of any [`Doubles`].
 pub(crate) const WIDEST: usize = 8;
 
 /// [`Doubles::WIDTH`] double-precision numbers, and what kernels do with them.
-pub(crate) trait Doubles: Copy {
+pub(crate) trait Doubles: Numbers {
     /// How many: 2, 4 or 8.
     const WIDTH: usize;
-    /// Which lanes.
-    type Mask: Copy;
 
     fn splat(value: f64) -> Self;
     /// The first numbers of `from`; so for all that load and store.
     fn load(from: &[f64]) -> Self;
     fn load_singles(from: &[f32]) -> Self;
     fn store(self, to: &mut [f64]);
-    fn add(self, other: Self) -> Self;
-    fn sub(self, other: Self) -> Self;
-    fn mul(self, other: Self) -> Self;
-    /// `self * b + c`, rounded once where the instruction set can; so for the next one.
-    fn mul_add(self, b: Self, c: Self) -> Self;
-    /// `c - self * b`.
-    fn mul_sub_from(self, b: Self, c: Self) -> Self;
     /// `1 / self`, but for its last digit, for numbers within 1e-300 to 1e300.
     fn inverse(self) -> Self;
     fn sqrt(self) -> Self;
-    /// The lanes where `self < other`.
-    fn less(self, other: Self) -> Self::Mask;
     fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// Whether the mask has all lanes.
     fn all(mask: Self::Mask) -> bool;
-    /// `yes` in the lanes of the mask, `no` in the others.
-    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
     /// In each lane the entry of `column` that the bits of `index` say. The column's length is a multiple of 16.
     #[inline(always)]
@@ -73,68 +62,35 @@ pub(crate) trait Doubles: Copy {
     }
 }
 
-/// Two numbers, for every machine.
-#[derive(Clone, Copy)]
-pub(crate) struct Pair([f64; 2]);
-
-impl Pair {
-    #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        Pair([f(self.0[0], other.0[0]), f(self.0[1], other.0[1])])
-    }
-}
+/// For every machine.
+pub(crate) type Pair = Array<f64, 2>;
 
 impl Doubles for Pair {
     const WIDTH: usize = 2;
-    type Mask = [bool; 2];
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
-        Pair([value; 2])
+        Array([value; 2])
     }
     #[inline(always)]
     fn load(from: &[f64]) -> Self {
-        Pair([from[0], from[1]])
+        Array([from[0], from[1]])
     }
     #[inline(always)]
     fn load_singles(from: &[f32]) -> Self {
-        Pair([f64::from(from[0]), f64::from(from[1])])
+        Array([f64::from(from[0]), f64::from(from[1])])
     }
     #[inline(always)]
     fn store(self, to: &mut [f64]) {
         to[..2].copy_from_slice(&self.0);
     }
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
-    }
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
-    }
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        self.zip(other, |a, b| a * b)
-    }
-    #[inline(always)]
-    fn mul_add(self, b: Self, c: Self) -> Self {
-        self.mul(b).add(c)
-    }
-    #[inline(always)]
-    fn mul_sub_from(self, b: Self, c: Self) -> Self {
-        c.sub(self.mul(b))
-    }
-    #[inline(always)]
     fn inverse(self) -> Self {
-        Pair(self.0.map(|v| 1.0 / v))
+        Array(self.0.map(|v| 1.0 / v))
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Pair(self.0.map(f64::sqrt))
-    }
-    #[inline(always)]
-    fn less(self, other: Self) -> Self::Mask {
-        [self.0[0] < other.0[0], self.0[1] < other.0[1]]
+        Array(self.0.map(f64::sqrt))
     }
     #[inline(always)]
     fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask {
@@ -144,10 +100,6 @@ impl Doubles for Pair {
     fn all(mask: Self::Mask) -> bool {
         mask[0] & mask[1]
     }
-    #[inline(always)]
-    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
-        Pair(std::array::from_fn(|l| if mask[l] { yes.0[l] } else { no.0[l] }))
-    }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -155,7 +107,7 @@ pub(crate) use x86::{Eight, Four};
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
-    use super::Doubles;
+    use super::{Doubles, Numbers};
     use std::arch::x86_64::*;
 
     /// 256 bits.
@@ -177,8 +129,7 @@ mod x86 {
         )* };
     }
 
-    impl Doubles for Four {
-        const WIDTH: usize = 4;
+    impl Numbers for Four {
         type Mask = __m256d;
 
         intrinsics! { Four:
@@ -187,6 +138,23 @@ mod x86 {
             mul(other) = _mm256_mul_pd;
             mul_add(b, c) = _mm256_fmadd_pd;
             mul_sub_from(b, c) = _mm256_fnmadd_pd;
+        }
+        #[inline(always)]
+        fn less(self, other: Self) -> Self::Mask {
+            // SAFETY: called in kernels compiled for it, where it was detected.
+            unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+            // SAFETY: called in kernels compiled for it, where it was detected.
+            unsafe { Four(_mm256_blendv_pd(no.0, yes.0, mask)) }
+        }
+    }
+
+    impl Doubles for Four {
+        const WIDTH: usize = 4;
+
+        intrinsics! { Four:
             sqrt() = _mm256_sqrt_pd;
         }
         #[inline(always)]
@@ -218,11 +186,6 @@ mod x86 {
             unsafe { Four(_mm256_div_pd(_mm256_set1_pd(1.0), self.0)) }
         }
         #[inline(always)]
-        fn less(self, other: Self) -> Self::Mask {
-            // SAFETY: as above.
-            unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0) }
-        }
-        #[inline(always)]
         fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask {
             // SAFETY: as above.
             unsafe { _mm256_and_pd(a, b) }
@@ -231,11 +194,6 @@ mod x86 {
         fn all(mask: Self::Mask) -> bool {
             // SAFETY: as above.
             unsafe { _mm256_movemask_pd(mask) == 15 }
-        }
-        #[inline(always)]
-        fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
-            // SAFETY: as above.
-            unsafe { Four(_mm256_blendv_pd(no.0, yes.0, mask)) }
         }
     }
 
@@ -252,8 +210,7 @@ mod x86 {
         }
     }
 
-    impl Doubles for Eight {
-        const WIDTH: usize = 8;
+    impl Numbers for Eight {
         type Mask = __mmask8;
 
         intrinsics! { Eight:
@@ -262,6 +219,23 @@ mod x86 {
             mul(other) = _mm512_mul_pd;
             mul_add(b, c) = _mm512_fmadd_pd;
             mul_sub_from(b, c) = _mm512_fnmadd_pd;
+        }
+        #[inline(always)]
+        fn less(self, other: Self) -> Self::Mask {
+            // SAFETY: called in kernels compiled for it, where it was detected.
+            unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+            // SAFETY: called in kernels compiled for it, where it was detected.
+            unsafe { Eight(_mm512_mask_blend_pd(mask, no.0, yes.0)) }
+        }
+    }
+
+    impl Doubles for Eight {
+        const WIDTH: usize = 8;
+
+        intrinsics! { Eight:
             sqrt() = _mm512_sqrt_pd;
         }
         #[inline(always)]
@@ -298,22 +272,12 @@ mod x86 {
             y
         }
         #[inline(always)]
-        fn less(self, other: Self) -> Self::Mask {
-            // SAFETY: as above.
-            unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0) }
-        }
-        #[inline(always)]
         fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask {
             a & b
         }
         #[inline(always)]
         fn all(mask: Self::Mask) -> bool {
             mask == u8::MAX
-        }
-        #[inline(always)]
-        fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
-            // SAFETY: as above.
-            unsafe { Eight(_mm512_mask_blend_pd(mask, no.0, yes.0)) }
         }
         #[inline(always)]
         fn look_up(column: &[f64], index: &[f32]) -> Self {

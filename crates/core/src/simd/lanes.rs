@@ -1,6 +1,7 @@
 //! Sixteen numbers in registers: one of 512 bits, two of 256, or whatever the compiler makes of an array.
 
 use super::doubles::{self, Doubles};
+use super::numbers::{Array, Numbers};
 
 /// Numbers side by side.
 pub(crate) const WIDTH: usize = 16;
@@ -32,11 +33,9 @@ pub(crate) fn prefetch<T>(numbers: &[T]) {
 }
 
 /// Sixteen single-precision numbers, and what kernels do with them.
-pub(crate) trait Lanes: Copy {
+pub(crate) trait Lanes: Numbers {
     /// Values that fit into registers.
     const REGISTERS: usize;
-    /// Which lanes.
-    type Mask: Copy;
     /// Sixteen numbers of lanes.
     type Places: Copy;
     /// Double-precision numbers on the same machine.
@@ -51,14 +50,7 @@ pub(crate) trait Lanes: Copy {
         let count = to.len().min(WIDTH);
         to[..count].copy_from_slice(&self.store()[..count]);
     }
-    fn add(self, other: Self) -> Self;
-    fn sub(self, other: Self) -> Self;
-    fn mul(self, other: Self) -> Self;
     fn div(self, other: Self) -> Self;
-    /// `self * b + c`, rounded once where the instruction set can.
-    fn mul_add(self, b: Self, c: Self) -> Self;
-    /// `c - self * b`, likewise.
-    fn mul_sub_from(self, b: Self, c: Self) -> Self;
     fn max(self, other: Self) -> Self;
     /// `1 / self` to 11 bits or more, in a fraction of the time of a division.
     fn estimated_inverse(self) -> Self;
@@ -69,12 +61,8 @@ pub(crate) trait Lanes: Copy {
     fn places(places: &[u32; WIDTH]) -> Self::Places;
     /// In each lane what is in the lane that `places` has there.
     fn permute(self, places: Self::Places) -> Self;
-    /// The lanes where `self < other`.
-    fn less(self, other: Self) -> Self::Mask;
     /// The lanes of the mask as bits, the first lane in the lowest.
     fn bits(mask: Self::Mask) -> u32;
-    /// `yes` in the lanes of the mask, `no` in the others.
-    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
     /// `1 / self` to about 2e-7 of it, for normal numbers.
     #[inline(always)]
@@ -114,58 +102,29 @@ pub(crate) trait Lanes: Copy {
     }
 }
 
-/// An array, for every machine.
-#[derive(Clone, Copy)]
-pub(crate) struct Portable([f32; WIDTH]);
-
-impl Portable {
-    #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
-        Portable(std::array::from_fn(|l| f(self.0[l], other.0[l])))
-    }
-}
+/// For every machine.
+pub(crate) type Portable = Array<f32, WIDTH>;
 
 impl Lanes for Portable {
     const REGISTERS: usize = 4;
-    type Mask = [bool; WIDTH];
     type Places = [u32; WIDTH];
     type Doubles = doubles::Pair;
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
-        Portable([value; WIDTH])
+        Array([value; WIDTH])
     }
     #[inline(always)]
     fn load(from: &[f32; WIDTH]) -> Self {
-        Portable(*from)
+        Array(*from)
     }
     #[inline(always)]
     fn store(self) -> [f32; WIDTH] {
         self.0
     }
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
-    }
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
-    }
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        self.zip(other, |a, b| a * b)
-    }
-    #[inline(always)]
     fn div(self, other: Self) -> Self {
         self.zip(other, |a, b| a / b)
-    }
-    #[inline(always)]
-    fn mul_add(self, b: Self, c: Self) -> Self {
-        self.mul(b).add(c)
-    }
-    #[inline(always)]
-    fn mul_sub_from(self, b: Self, c: Self) -> Self {
-        c.sub(self.mul(b))
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
@@ -173,15 +132,15 @@ impl Lanes for Portable {
     }
     #[inline(always)]
     fn estimated_inverse(self) -> Self {
-        Portable(self.0.map(|v| 1.0 / v))
+        Array(self.0.map(|v| 1.0 / v))
     }
     #[inline(always)]
     fn estimated_inverse_sqrt(self) -> Self {
-        Portable(self.0.map(|v| 1.0 / v.sqrt()))
+        Array(self.0.map(|v| 1.0 / v.sqrt()))
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        Portable(self.0.map(f32::abs))
+        Array(self.0.map(f32::abs))
     }
     #[inline(always)]
     fn places(places: &[u32; WIDTH]) -> Self::Places {
@@ -189,19 +148,11 @@ impl Lanes for Portable {
     }
     #[inline(always)]
     fn permute(self, places: Self::Places) -> Self {
-        Portable(places.map(|place| self.0[place as usize % WIDTH]))
-    }
-    #[inline(always)]
-    fn less(self, other: Self) -> Self::Mask {
-        std::array::from_fn(|l| self.0[l] < other.0[l])
+        Array(places.map(|place| self.0[place as usize % WIDTH]))
     }
     #[inline(always)]
     fn bits(mask: Self::Mask) -> u32 {
         mask.iter().rev().fold(0, |bits, lane| 2 * bits + u32::from(*lane))
-    }
-    #[inline(always)]
-    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
-        Portable(std::array::from_fn(|l| if mask[l] { yes.0[l] } else { no.0[l] }))
     }
 }
 
@@ -211,7 +162,7 @@ pub(crate) use x86::{Avx2, Avx512};
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::doubles::{Eight, Four};
-    use super::{Lanes, WIDTH};
+    use super::{Lanes, Numbers, WIDTH};
     use std::arch::x86_64::*;
 
     /// Two registers of 256 bits.
@@ -254,19 +205,37 @@ mod x86 {
         }
     }
 
-    impl Lanes for Avx2 {
-        const REGISTERS: usize = 8;
+    impl Numbers for Avx2 {
         type Mask = (__m256, __m256);
-        type Places = (__m256i, __m256i);
-        type Doubles = Four;
 
         intrinsics! { Avx2:
             add(other) = _mm256_add_ps;
             sub(other) = _mm256_sub_ps;
             mul(other) = _mm256_mul_ps;
-            div(other) = _mm256_div_ps;
             mul_add(b, c) = _mm256_fmadd_ps;
             mul_sub_from(b, c) = _mm256_fnmadd_ps;
+        }
+        #[inline(always)]
+        fn less(self, other: Self) -> Self::Mask {
+            // SAFETY: called in kernels compiled for it, where it was detected.
+            unsafe {
+                (_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0), _mm256_cmp_ps::<_CMP_LT_OQ>(self.1, other.1))
+            }
+        }
+        #[inline(always)]
+        fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+            // SAFETY: called in kernels compiled for it, where it was detected.
+            unsafe { Avx2(_mm256_blendv_ps(no.0, yes.0, mask.0), _mm256_blendv_ps(no.1, yes.1, mask.1)) }
+        }
+    }
+
+    impl Lanes for Avx2 {
+        const REGISTERS: usize = 8;
+        type Places = (__m256i, __m256i);
+        type Doubles = Four;
+
+        intrinsics! { Avx2:
+            div(other) = _mm256_div_ps;
             max(other) = _mm256_max_ps;
             estimated_inverse() = _mm256_rcp_ps;
             estimated_inverse_sqrt() = _mm256_rsqrt_ps;
@@ -321,21 +290,9 @@ mod x86 {
             }
         }
         #[inline(always)]
-        fn less(self, other: Self) -> Self::Mask {
-            // SAFETY: as above.
-            unsafe {
-                (_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0), _mm256_cmp_ps::<_CMP_LT_OQ>(self.1, other.1))
-            }
-        }
-        #[inline(always)]
         fn bits(mask: Self::Mask) -> u32 {
             // SAFETY: as above.
             unsafe { (_mm256_movemask_ps(mask.0) | _mm256_movemask_ps(mask.1) << 8) as u32 }
-        }
-        #[inline(always)]
-        fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
-            // SAFETY: as above.
-            unsafe { Avx2(_mm256_blendv_ps(no.0, yes.0, mask.0), _mm256_blendv_ps(no.1, yes.1, mask.1)) }
         }
         #[inline(always)]
         fn total(self) -> f32 {
@@ -344,19 +301,35 @@ mod x86 {
         }
     }
 
-    impl Lanes for Avx512 {
-        const REGISTERS: usize = 32;
+    impl Numbers for Avx512 {
         type Mask = __mmask16;
-        type Places = __m512i;
-        type Doubles = Eight;
 
         intrinsics! { Avx512:
             add(other) = _mm512_add_ps;
             sub(other) = _mm512_sub_ps;
             mul(other) = _mm512_mul_ps;
-            div(other) = _mm512_div_ps;
             mul_add(b, c) = _mm512_fmadd_ps;
             mul_sub_from(b, c) = _mm512_fnmadd_ps;
+        }
+        #[inline(always)]
+        fn less(self, other: Self) -> Self::Mask {
+            // SAFETY: called in kernels compiled for it, where it was detected.
+            unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0) }
+        }
+        #[inline(always)]
+        fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+            // SAFETY: called in kernels compiled for it, where it was detected.
+            unsafe { Avx512(_mm512_mask_blend_ps(mask, no.0, yes.0)) }
+        }
+    }
+
+    impl Lanes for Avx512 {
+        const REGISTERS: usize = 32;
+        type Places = __m512i;
+        type Doubles = Eight;
+
+        intrinsics! { Avx512:
+            div(other) = _mm512_div_ps;
             max(other) = _mm512_max_ps;
             estimated_inverse() = _mm512_rcp14_ps;
             estimated_inverse_sqrt() = _mm512_rsqrt14_ps;
@@ -400,18 +373,8 @@ mod x86 {
             unsafe { Avx512(_mm512_permutexvar_ps(places, self.0)) }
         }
         #[inline(always)]
-        fn less(self, other: Self) -> Self::Mask {
-            // SAFETY: as above.
-            unsafe { _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0) }
-        }
-        #[inline(always)]
         fn bits(mask: Self::Mask) -> u32 {
             u32::from(mask)
-        }
-        #[inline(always)]
-        fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
-            // SAFETY: as above.
-            unsafe { Avx512(_mm512_mask_blend_ps(mask, no.0, yes.0)) }
         }
         #[inline(always)]
         fn total(self) -> f32 {

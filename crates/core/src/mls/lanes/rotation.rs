@@ -15,7 +15,7 @@
 //! H is positive definite at the maximum and there only, since on all rotations `tr(R A)` has no other.
 
 use super::{Lane, Start, Turning, ANCHOR_WEIGHT, BATCH};
-use crate::simd::{multiversion, Doubles, Lanes};
+use crate::simd::{minor, multiversion, square_of, Doubles, Lanes, Numbers};
 
 /// `|z|^2` of a last step, and `z g` over the least eigenvalue of 2 H: what it leaves is below 1e-9.
 const CLOSE: f64 = 1e-6;
@@ -198,7 +198,6 @@ fn newton<D: Doubles>(a: &[D; 9], u: &[D; 4]) -> Step<D> {
     let (xx, yy, zz) = (twice(syy, szz), twice(sxx, szz), twice(sxx, syy));
     let (xy, xz, yz) = (sxy.add(syx), sxz.add(szx), syz.add(szy));
     // Its adjugate.
-    let minor = |a: D, b: D, c: D, d: D| c.mul_sub_from(d, a.mul(b));
     let (bxx, byy, bzz) = (minor(yy, zz, yz, yz), minor(xx, zz, xz, xz), minor(xx, yy, xy, xy));
     let sum = |a: D, b: D, c: D, d: D| a.mul_add(b, c.mul(d));
     let (bxy, bxz, byz) = (sum(xz, yz, xy, zz), sum(xy, yz, xz, yy), sum(xy, xz, yz, xx));
@@ -264,16 +263,6 @@ fn scaled<D: Doubles, const N: usize>(numbers: &[D; N], by: D) -> [D; N] {
         result[k] = numbers[k].mul(by);
     }
     result
-}
-
-/// The sum of the squares.
-#[inline(always)]
-fn square_of<D: Doubles, const N: usize>(of: &[D; N]) -> D {
-    let mut sum = of[0].mul(of[0]);
-    for k in 1..N {
-        sum = of[k].mul_add(of[k], sum);
-    }
-    sum
 }
 
 /// `R - I`.

@@ -14,7 +14,7 @@
 
 use super::super::matrix::Matrix;
 use super::{Start, BATCH};
-use crate::simd::{multiversion, Lanes, WIDTH};
+use crate::simd::{minor, multiversion, square_of, Lanes, WIDTH};
 
 /// The weight of the anchor here.
 const ANCHOR: f32 = 1e-6;
@@ -69,7 +69,6 @@ fn start_body<L: Lanes>(g: &Matrix<3>, start: &mut Start) {
 /// d and k.
 #[inline(always)]
 fn coefficients<L: Lanes>(a: &[L; 9]) -> (L, L) {
-    let minor = |a: L, b: L, c: L, d: L| c.mul_sub_from(d, a.mul(b));
     let minor_of = |i: usize, j: usize, k: usize, l: usize| minor(a[i], a[j], a[k], a[l]);
     let first = [minor_of(4, 8, 5, 7), minor_of(5, 6, 3, 8), minor_of(3, 7, 4, 6)];
     let other = [
@@ -89,7 +88,6 @@ fn coefficients<L: Lanes>(a: &[L; 9]) -> (L, L) {
 #[inline(always)]
 fn quaternion_of<L: Lanes>(a: [L; 9], v: L) -> [L; 4] {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
-    let minor = |a: L, b: L, c: L, d: L| c.mul_sub_from(d, a.mul(b));
     let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = a;
     let largest = v.add(one);
     let (n01, n02, n03) = (yz.sub(zy), zx.sub(xz), xy.sub(yx));
@@ -140,16 +138,6 @@ fn quaternion_of<L: Lanes>(a: [L; 9], v: L) -> [L; 4] {
     }
     let size = square_of(&u).max(L::splat(1e-36)).inverse_sqrt();
     [u[0].mul(size), u[1].mul(size), u[2].mul(size), u[3].mul(size)]
-}
-
-/// The sum of the squares.
-#[inline(always)]
-fn square_of<L: Lanes, const N: usize>(of: &[L; N]) -> L {
-    let mut sum = of[0].mul(of[0]);
-    for k in 1..N {
-        sum = of[k].mul_add(of[k], sum);
-    }
-    sum
 }
 
 /// The root of a number, but for what is next to 0.
