@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! a node is a range of leaves; all leaves have LEAF points, but for the last
-//! split(node): its points at the median of the longest side of their box, so that each half has whole leaves
+//! split(node): its points at the median of their longest side, so that each half has whole leaves
 //! ```
 //!
 //! Nodes are numbered in preorder: the left half of node `i` is `i + 1`, its right half comes after the whole left half. So
@@ -25,6 +25,10 @@ use crate::simd::{Aligned, WIDTH};
 pub(crate) const LEAF: usize = 64;
 /// Blocks a leaf.
 pub(crate) const LEAF_BLOCKS: usize = LEAF / WIDTH;
+/// Points at all of whose coordinates the processor looks at once.
+const SEVERAL: usize = 8;
+/// Points of which not all are asked for the longest side.
+const MANY: usize = 1 << 9;
 /// Levels that are split one after the other, all nodes of a level at once; below, each subtree is one task.
 const LEVELS: usize = 6;
 
@@ -184,7 +188,7 @@ fn build(points: &mut [Point], boxes: &mut [Region], progress: &mut Progress<'_>
     if points.is_empty() {
         return Ok(());
     }
-    let mut level: Vec<Unsplit<'_>> = vec![Mutex::new((points, boxes))];
+    let mut level: Vec<Unsplit<'_>> = vec![Mutex::new((points, &mut *boxes))];
     for depth in 0..LEVELS {
         let done = depth as f64 / (LEVELS + 4) as f64;
         for_each_task(level.len(), done..done, progress, |task, _| {
@@ -197,7 +201,20 @@ fn build(points: &mut [Point], boxes: &mut [Region], progress: &mut Progress<'_>
     for_each_task(level.len(), done..1.0, progress, |task, stop| {
         let (points, boxes) = &mut *level[task].lock().expect("no task panics");
         split_all(points, boxes, stop);
-    })
+    })?;
+    drop(level);
+    join(boxes, LEVELS);
+    Ok(())
+}
+
+/// The boxes of the first levels, from those below.
+fn join(boxes: &mut [Region], levels: usize) {
+    if levels > 0 && boxes.len() > 1 {
+        let left = middle(boxes);
+        join(&mut boxes[1..2 * left], levels - 1);
+        join(&mut boxes[2 * left..], levels - 1);
+        boxes[0] = boxes[1].and(&boxes[2 * left]);
+    }
 }
 
 /// Both halves of a subtree that was split; nothing of a leaf, which is done.
@@ -217,26 +234,32 @@ fn middle(boxes: &[Region]) -> usize {
     boxes.len().div_ceil(2).div_ceil(2)
 }
 
+/// Splits a subtree down to its leaves, and writes their boxes and those above.
 fn split_all(points: &mut [Point], boxes: &mut [Region], stop: &(dyn Fn() -> bool + Sync)) {
-    split(points, boxes);
-    if boxes.len() == 1 || stop() {
+    if boxes.len() == 1 {
+        boxes[0] = Region::around(points.chunks(SEVERAL));
         return;
     }
+    if stop() {
+        return;
+    }
+    split(points, boxes);
     let left = middle(boxes);
     let (points, right_points) = points.split_at_mut(left * LEAF);
-    let (boxes, right_boxes) = boxes[1..].split_at_mut(2 * left - 1);
-    split_all(points, boxes, stop);
-    split_all(right_points, right_boxes, stop);
+    split_all(points, &mut boxes[1..2 * left], stop);
+    split_all(right_points, &mut boxes[2 * left..], stop);
+    boxes[0] = boxes[1].and(&boxes[2 * left]);
 }
 
-/// Writes the box of a subtree, and puts the points of its left half first.
-fn split(points: &mut [Point], boxes: &mut [Region]) {
-    boxes[0] = Region::around(points);
+/// Puts the points of the left half of a subtree first.
+fn split(points: &mut [Point], boxes: &[Region]) {
     if boxes.len() == 1 {
         return;
     }
     let middle = middle(boxes) * LEAF;
-    let half = boxes[0].half;
+    // Of many points some say which side is the longest.
+    let step = if points.len() > MANY { SEVERAL } else { 1 };
+    let half = Region::around(points.chunks(SEVERAL).step_by(step)).half;
     if half[0] >= half[1] && half[0] >= half[2] {
         select::<0>(points, middle);
     } else if half[1] >= half[2] {
@@ -251,12 +274,10 @@ fn select<const AXIS: usize>(points: &mut [Point], middle: usize) {
 }
 
 impl Region {
-    fn around(points: &[Point]) -> Region {
-        /// Points at all of whose coordinates the processor looks at once.
-        const SEVERAL: usize = 8;
+    fn around<'a>(points: impl Iterator<Item = &'a [Point]>) -> Region {
         let mut least = [[f32::INFINITY; 4]; SEVERAL];
         let mut most = [[f32::NEG_INFINITY; 4]; SEVERAL];
-        for points in points.chunks(SEVERAL) {
+        for points in points {
             let points: &[Point; SEVERAL] = match points.try_into() {
                 Ok(points) => points,
                 Err(_) => &std::array::from_fn(|i| points[i.min(points.len() - 1)]),
@@ -272,6 +293,16 @@ impl Region {
         let least = |k: usize| least.iter().fold(f32::INFINITY, |least, of| least.min(of[k]));
         let most = |k: usize| most.iter().fold(f32::NEG_INFINITY, |most, of| most.max(of[k]));
         Region::between([0, 1, 2].map(least), [0, 1, 2].map(most))
+    }
+
+    /// Around both.
+    fn and(&self, other: &Region) -> Region {
+        let least = |of: &Region, k: usize| of.centre[k] - of.half[k];
+        let most = |of: &Region, k: usize| of.centre[k] + of.half[k];
+        Region::between(
+            [0, 1, 2].map(|k| least(self, k).min(least(other, k))),
+            [0, 1, 2].map(|k| most(self, k).max(most(other, k))),
+        )
     }
 
     fn between(least: [f32; 3], most: [f32; 3]) -> Region {
