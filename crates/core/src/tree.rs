@@ -236,14 +236,10 @@ fn middle(boxes: &[Region]) -> usize {
 
 /// Splits a subtree down to its leaves, and writes their boxes and those above.
 fn split_all(points: &mut [Point], boxes: &mut [Region], stop: &(dyn Fn() -> bool + Sync)) {
-    if boxes.len() == 1 {
-        boxes[0] = Region::around(points.chunks(SEVERAL));
-        return;
-    }
-    if stop() {
-        return;
-    }
     split(points, boxes);
+    if boxes.len() == 1 || stop() {
+        return;
+    }
     let left = middle(boxes);
     let (points, right_points) = points.split_at_mut(left * LEAF);
     split_all(points, &mut boxes[1..2 * left], stop);
@@ -251,9 +247,10 @@ fn split_all(points: &mut [Point], boxes: &mut [Region], stop: &(dyn Fn() -> boo
     boxes[0] = boxes[1].and(&boxes[2 * left]);
 }
 
-/// Puts the points of the left half of a subtree first.
-fn split(points: &mut [Point], boxes: &[Region]) {
+/// Puts the points of the left half of a subtree first; writes the box of a leaf.
+fn split(points: &mut [Point], boxes: &mut [Region]) {
     if boxes.len() == 1 {
+        boxes[0] = Region::around(points.chunks(SEVERAL));
         return;
     }
     let middle = middle(boxes) * LEAF;
