@@ -15,7 +15,7 @@
 
 use crate::memory::filled;
 use crate::simd::loops::{multiply_add_f32, multiversion_loops};
-use crate::simd::Simd;
+use crate::simd::{multiversion, Lanes, Simd};
 
 /// Points in a block.
 pub(crate) const LANES: usize = 16;
@@ -79,36 +79,63 @@ fn clear(rows: &mut [Row], first: usize) {
     }
 }
 
-multiversion_loops! {
-    /// Packs the logits of 16 points (16 x m).
-    fn pack(logits: &[f32], temperature: f64, rows: &mut [Row]) = pack_body
+/// Packs the logits of 16 points (16 x m).
+fn pack(simd: Simd, logits: &[f32], temperature: f64, rows: &mut [Row]) {
+    let m = rows.len() - MORE;
+    let (weights, rest) = rows.split_at_mut(m);
+    for (i, row) in weights.iter_mut().enumerate() {
+        // One bound for all of them.
+        let logits = &logits[i..=(LANES - 1) * m + i];
+        for lane in 0..LANES {
+            row.0[lane] = logits[lane * m];
+        }
+    }
+    let largest = largest(simd, weights);
+    exponentials(simd, &largest, temperature, weights, rest);
+}
+
+/// The largest and the second-largest logit of each lane, and the index of the former, whose bits are it.
+struct Largest {
+    first: Row,
+    second: Row,
+    index: Row,
+}
+
+multiversion! {
+    /// As [`super::relative_weights`] has it: of equal logits, the first is the dominant one.
+    fn largest(logits: &[Row]) -> Largest = largest_body
 }
 
 #[inline(always)]
-fn pack_body<const FMA: bool>(logits: &[f32], temperature: f64, rows: &mut [Row]) {
-    let m = rows.len() - MORE;
+fn largest_body<L: Lanes>(logits: &[Row]) -> Largest {
+    let (mut first, mut second) = (L::splat(f32::NEG_INFINITY), L::splat(f32::NEG_INFINITY));
+    let mut index = L::splat(0.0);
+    for (i, row) in logits.iter().enumerate() {
+        let l = L::load(&row.0);
+        let above = first.less(l);
+        second = L::select(above, first, second.max(l));
+        first = L::select(above, l, first);
+        index = L::select(above, L::splat(f32::from_bits(i as u32)), index);
+    }
+    Largest { first: Row(first.store()), second: Row(second.store()), index: Row(index.store()) }
+}
+
+multiversion_loops! {
+    /// Makes weights of logits, and fills the rows after them.
+    fn exponentials(largest: &Largest, temperature: f64, weights: &mut [Row], rest: &mut [Row]) = exponentials_body
+}
+
+#[inline(always)]
+fn exponentials_body<const FMA: bool>(
+    largest: &Largest,
+    temperature: f64,
+    weights: &mut [Row],
+    rest: &mut [Row],
+) {
+    let m = weights.len();
     let scale = std::f64::consts::LOG2_E / temperature;
-    let (weights, rest) = rows.split_at_mut(m);
-    for (i, row) in weights.iter_mut().enumerate() {
-        for lane in 0..LANES {
-            row.0[lane] = logits[lane * m + i];
-        }
-    }
-    // A loop of its own: what was just written number by number is not there yet to be read all at once.
-    let (mut first, mut second, mut index) =
-        ([f32::NEG_INFINITY; LANES], [f32::NEG_INFINITY; LANES], [0u32; LANES]);
-    for (i, row) in weights.iter().enumerate() {
-        let at = i as u32;
-        for lane in 0..LANES {
-            let l = row.0[lane];
-            // As `relative_weights` has it: of equal logits, the first is the dominant one.
-            let above = l > first[lane];
-            let lower = if l > second[lane] { l } else { second[lane] };
-            second[lane] = if above { first[lane] } else { lower };
-            first[lane] = if above { l } else { first[lane] };
-            index[lane] = if above { at } else { index[lane] };
-        }
-    }
+    let Largest { first: Row(first), second: Row(second), index } = largest;
+    let index = index.0.map(f32::to_bits);
     let mut sum = [0.0; LANES];
     for (i, row) in weights.iter_mut().enumerate() {
         let at = i as u32;
