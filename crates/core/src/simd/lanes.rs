@@ -73,6 +73,16 @@ pub(crate) trait Lanes: Copy {
     /// `yes` in the lanes of the mask, `no` in the others.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
+    /// Writes the lanes whose bits are set, one after the other; beyond them anything.
+    #[inline(always)]
+    fn compress(self, mut bits: u32, to: &mut [f32; WIDTH]) {
+        let from = self.store();
+        for to in to {
+            *to = from[bits.trailing_zeros() as usize % WIDTH];
+            bits &= bits.wrapping_sub(1);
+        }
+    }
+
     /// `1 / self` to about 2e-7 of it, for normal numbers.
     #[inline(always)]
     fn inverse(self) -> Self {
@@ -380,6 +390,13 @@ mod x86 {
             let mask = ((1u32 << to.len().min(WIDTH)) - 1) as __mmask16;
             // SAFETY: as above; where the mask is set there is room.
             unsafe { _mm512_mask_storeu_ps(to.as_mut_ptr(), mask, self.0) }
+        }
+        #[inline(always)]
+        fn compress(self, bits: u32, to: &mut [f32; WIDTH]) {
+            // SAFETY: as above; 16 numbers may be written.
+            unsafe {
+                _mm512_storeu_ps(to.as_mut_ptr(), _mm512_maskz_compress_ps(bits as __mmask16, self.0));
+            }
         }
         #[inline(always)]
         fn abs(self) -> Self {
