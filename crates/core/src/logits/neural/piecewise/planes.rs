@@ -3,7 +3,6 @@
 use crate::simd::{Lanes, WIDTH};
 
 /// A list of `N` numbers each, side by side in `N` planes.
-#[derive(Clone)]
 pub(super) struct Planes<const N: usize> {
     pub len: usize,
     /// Longer than the list.
@@ -16,12 +15,24 @@ impl<const N: usize> Default for Planes<N> {
     }
 }
 
+impl<const N: usize> Clone for Planes<N> {
+    /// Without the room that is not needed.
+    fn clone(&self) -> Self {
+        let room = room(self.len);
+        Planes { len: self.len, planes: std::array::from_fn(|k| self.planes[k][..room].to_vec()) }
+    }
+}
+
+/// Numbers in a plane: whatever is appended or loaded is a whole register.
+fn room(len: usize) -> usize {
+    len.next_multiple_of(WIDTH) + WIDTH
+}
+
 impl<const N: usize> Planes<N> {
     /// An empty list, with room for `count`.
     pub(super) fn clear(&mut self, count: usize) {
         self.len = 0;
-        // Whatever is appended or loaded is a whole register.
-        let room = count.next_multiple_of(WIDTH) + WIDTH;
+        let room = room(count);
         if self.planes[0].len() < room {
             self.planes.iter_mut().for_each(|plane| plane.resize(room, 0.0));
         }
