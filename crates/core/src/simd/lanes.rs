@@ -261,6 +261,24 @@ mod x86 {
         }
     }
 
+    /// For each eight bits the numbers of those that are set.
+    static COMPRESSED: [[u32; 8]; 256] = {
+        let mut places = [[0; 8]; 256];
+        let mut bits = 0;
+        while bits < 256 {
+            let (mut lane, mut count) = (0, 0);
+            while lane < 8 {
+                if bits >> lane & 1 == 1 {
+                    places[bits][count] = lane as u32;
+                    count += 1;
+                }
+                lane += 1;
+            }
+            bits += 1;
+        }
+        places
+    };
+
     impl Lanes for Avx2 {
         const REGISTERS: usize = 8;
         type Mask = (__m256, __m256);
@@ -297,6 +315,18 @@ mod x86 {
                 _mm256_storeu_ps(to.as_mut_ptr().add(8), self.1);
             }
             to
+        }
+        #[inline(always)]
+        fn compress(self, bits: u32, to: &mut [f32; WIDTH]) {
+            let (low, high) = (bits as usize & 0xff, bits as usize >> 8 & 0xff);
+            // SAFETY: as above; the first half is at most 8 lanes, so that 8 more may be written after it.
+            unsafe {
+                let places = |bits: usize| _mm256_loadu_si256(COMPRESSED[bits].as_ptr().cast());
+                let to = to.as_mut_ptr();
+                _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(self.0, places(low)));
+                let to = to.add(low.count_ones() as usize);
+                _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(self.1, places(high)));
+            }
         }
         #[inline(always)]
         fn abs(self) -> Self {
