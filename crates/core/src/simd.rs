@@ -144,6 +144,25 @@ mod tests {
     multiversion! { fn permuted(a: &[f32; WIDTH], places: &[u32; WIDTH]) -> [f32; WIDTH] = permuted_body }
 
     #[inline(always)]
+    fn compressed_body<L: Lanes>(a: &[f32; WIDTH], bits: u32, to: &mut [f32; WIDTH]) {
+        L::load(a).compress(bits, to);
+    }
+    multiversion! { fn compressed(a: &[f32; WIDTH], bits: u32, to: &mut [f32; WIDTH]) = compressed_body }
+
+    #[test]
+    fn the_lanes_of_some_bits_are_stored_side_by_side() {
+        let a = std::array::from_fn(|i| i as f32);
+        for simd in [Simd::Portable, Simd::Avx2, Simd::Avx512].into_iter().filter(|s| *s <= Simd::best()) {
+            for bits in (0..=0xffff).step_by(51) {
+                let mut to = [-1.0; WIDTH];
+                compressed(simd, &a, bits, &mut to);
+                let expected: Vec<f32> = (0..16).filter(|i| bits >> i & 1 == 1).map(|i| i as f32).collect();
+                assert_eq!(to[..expected.len()], expected, "{simd:?}, {bits:b}");
+            }
+        }
+    }
+
+    #[inline(always)]
     fn smaller_body<L: Lanes>(a: &[f32; WIDTH], b: &[f32; WIDTH]) -> u32 {
         L::bits(L::load(a).less(L::load(b)))
     }

@@ -92,7 +92,7 @@ impl Node {
 }
 
 /// Coordinates, and the point's own index: the bits of the last number are it.
-type Point = [f32; 4];
+pub(crate) type Point = [f32; 4];
 
 impl PointTree {
     /// The tree of the points `x` (n x dim), which it normalises by `frame`: that of the networks it is for.
@@ -153,6 +153,11 @@ impl PointTree {
     pub(crate) fn point(&self, place: usize) -> [f32; 3] {
         let [x, y, z, _] = self.points[place];
         [x, y, z]
+    }
+
+    /// The points of a node.
+    pub(crate) fn points(&self, node: Node) -> &[Point] {
+        &self.points[node.first * LEAF..self.len().min((node.first + node.count) * LEAF)]
     }
 
     /// The 16 points from a place on, coordinate by coordinate; where there are fewer, the last one again and again.

@@ -64,6 +64,16 @@ pub(crate) trait Lanes: Numbers {
     /// The lanes of the mask as bits, the first lane in the lowest.
     fn bits(mask: Self::Mask) -> u32;
 
+    /// Writes the lanes whose bits are set, one after the other; beyond them anything.
+    #[inline(always)]
+    fn compress(self, mut bits: u32, to: &mut [f32; WIDTH]) {
+        let from = self.store();
+        for to in to {
+            *to = from[bits.trailing_zeros() as usize % WIDTH];
+            bits &= bits.wrapping_sub(1);
+        }
+    }
+
     /// `1 / self` to about 2e-7 of it, for normal numbers.
     #[inline(always)]
     fn inverse(self) -> Self {
@@ -205,6 +215,24 @@ mod x86 {
         }
     }
 
+    /// For each eight bits the numbers of those that are set.
+    static COMPRESSED: [[u32; 8]; 256] = {
+        let mut places = [[0; 8]; 256];
+        let mut bits = 0;
+        while bits < 256 {
+            let (mut lane, mut count) = (0, 0);
+            while lane < 8 {
+                if bits >> lane & 1 == 1 {
+                    places[bits][count] = lane as u32;
+                    count += 1;
+                }
+                lane += 1;
+            }
+            bits += 1;
+        }
+        places
+    };
+
     impl Numbers for Avx2 {
         type Mask = (__m256, __m256);
 
@@ -259,6 +287,18 @@ mod x86 {
                 _mm256_storeu_ps(to.as_mut_ptr().add(8), self.1);
             }
             to
+        }
+        #[inline(always)]
+        fn compress(self, bits: u32, to: &mut [f32; WIDTH]) {
+            let (low, high) = (bits as usize & 0xff, bits as usize >> 8 & 0xff);
+            // SAFETY: as above; the first half is at most 8 lanes, so that 8 more may be written after it.
+            unsafe {
+                let places = |bits: usize| _mm256_loadu_si256(COMPRESSED[bits].as_ptr().cast());
+                let to = to.as_mut_ptr();
+                _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(self.0, places(low)));
+                let to = to.add(low.count_ones() as usize);
+                _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(self.1, places(high)));
+            }
         }
         #[inline(always)]
         fn abs(self) -> Self {
@@ -356,6 +396,13 @@ mod x86 {
             let mask = ((1u32 << to.len().min(WIDTH)) - 1) as __mmask16;
             // SAFETY: as above; where the mask is set there is room.
             unsafe { _mm512_mask_storeu_ps(to.as_mut_ptr(), mask, self.0) }
+        }
+        #[inline(always)]
+        fn compress(self, bits: u32, to: &mut [f32; WIDTH]) {
+            // SAFETY: as above; 16 numbers may be written.
+            unsafe {
+                _mm512_storeu_ps(to.as_mut_ptr(), _mm512_maskz_compress_ps(bits as __mmask16, self.0));
+            }
         }
         #[inline(always)]
         fn abs(self) -> Self {

@@ -1,89 +1,74 @@
 //! Layer 1 over a box: which of its neurons are surely on, surely off, or open. In layer 2 each of them is a column.
 
-use super::bounds::{bounds, classify, lanes_of};
-use super::rows::loads;
-use crate::simd::{multiversion, Aligned, Lanes, WIDTH};
-use crate::tree::Region;
+use super::bounds::{bounds, bounds_at, classify, Place, MANY};
+use super::planes::Planes;
+use crate::simd::{multiversion, Lanes, WIDTH};
 
-/// Neurons of layer 1, 16 at a time: `w` (3 coordinates) and `b`.
-#[derive(Default)]
-pub(super) struct Columns {
-    pub len: usize,
-    pub planes: Vec<[Aligned; 4]>,
-}
+/// Neurons of layer 1: `w` (3 coordinates), `b`, and the bits of the number of the column.
+pub(super) type Columns = Planes<5>;
 
-/// A neuron of layer 1 that is on or open in a box, as a term of layer 2's rows.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-pub(super) struct Term {
-    /// An affine map that the neuron equals where it is on, and differs from by at most `spread` where it is open.
-    pub map: [f32; 4],
-    pub spread: f32,
-    /// The column among those of the parent.
-    pub column: u32,
-}
-
-const NO_TERM: Term = Term { map: [0.0; 4], spread: 0.0, column: 0 };
+/// Open neurons of layer 1 as terms of layer 2's rows: an affine map, how far the neuron may be from it, and the bits of the number
+/// of the column.
+pub(super) type Relaxed = Planes<6>;
 
 /// What a parent's columns are in a child's box.
 #[derive(Default)]
 pub(super) struct Sorted {
-    on: Vec<Term>,
-    open: Vec<Term>,
-    counts: [usize; 2],
-}
-
-impl Sorted {
-    pub(super) fn on(&self) -> &[Term] {
-        &self.on[..self.counts[0]]
-    }
-
-    pub(super) fn open(&self) -> &[Term] {
-        &self.open[..self.counts[1]]
-    }
+    pub on: Columns,
+    pub open: Relaxed,
 }
 
 multiversion! {
-    /// Sorts the parent's columns over a box, and keeps the open ones in `child`.
-    pub(super) fn sort(parent: &Columns, region: &Region, child: &mut Columns, sorted: &mut Sorted) = sort_body
+    /// Sorts the parent's columns over a box, and keeps the open ones in `child`, with the numbers that they have in the parent.
+    pub(super) fn sort(
+        parent: &Columns,
+        place: Place<'_>,
+        child: &mut Columns,
+        sorted: &mut Sorted,
+    ) = sort_body
 }
 
 #[inline(always)]
-fn sort_body<L: Lanes>(parent: &Columns, region: &Region, child: &mut Columns, sorted: &mut Sorted) {
-    for terms in [&mut sorted.on, &mut sorted.open] {
-        terms.resize(terms.len().max(parent.len), NO_TERM);
-    }
-    child.planes.clear();
-    let [mut on, mut open] = [0, 0];
-    for (chunk, planes) in parent.planes.iter().enumerate() {
-        let map = loads::<L>(planes);
-        let (lower, upper) = bounds(map, L::splat(0.0), region);
-        // Between lower and upper relu(a) lies between slope * a and slope * a - slope * lower.
-        let slope = upper.div(upper.sub(lower));
-        let spread = slope.mul(lower).mul(L::splat(-0.5));
-        let [on_lanes, open_lanes] = classify(lower, upper);
-        // The last planes may have lanes without neurons.
-        let neurons = u32::MAX >> (32 - WIDTH.min(parent.len - WIDTH * chunk));
-        let row = |t: usize| [planes[0].0[t], planes[1].0[t], planes[2].0[t], planes[3].0[t]];
-        for t in lanes_of(on_lanes & neurons) {
-            sorted.on[on] = Term { map: row(t), spread: 0.0, column: (WIDTH * chunk + t) as u32 };
-            on += 1;
-        }
-        let (slope, spread) = (slope.store(), spread.store());
-        for t in lanes_of(open_lanes & neurons) {
-            let (row, s) = (row(t), slope[t]);
-            let map = [row[0] * s, row[1] * s, row[2] * s, row[3] * s + spread[t]];
-            sorted.open[open] = Term { map, spread: spread[t], column: (WIDTH * chunk + t) as u32 };
-            if open % WIDTH == 0 {
-                child.planes.push([Aligned::ZERO; 4]);
-            }
-            let last = child.planes.last_mut().expect("pushed above");
-            for k in 0..4 {
-                last[k].0[open % WIDTH] = row[k];
-            }
-            open += 1;
+fn sort_body<L: Lanes>(parent: &Columns, place: Place<'_>, child: &mut Columns, sorted: &mut Sorted) {
+    let Sorted { on, open } = sorted;
+    on.clear(parent.len);
+    open.clear(parent.len);
+    child.clear(parent.len);
+    let nothing = L::splat(0.0);
+    let look = !place.points.is_empty() && parent.len >= MANY;
+    for first in (0..parent.len).step_by(WIDTH) {
+        let column = parent.load::<L>(first);
+        let [a, b, c, d, _] = column;
+        let (lower, upper) = bounds([a, b, c, d], nothing, place.region);
+        let [on_bits, open_bits] = classify(lower, upper);
+        let neurons = u32::MAX >> (32 - WIDTH.min(parent.len - first));
+        on.append(on_bits & neurons, column);
+        child.append(open_bits & neurons, column);
+        if !look {
+            open.append(open_bits & neurons, relaxed(column, lower, upper));
         }
     }
-    sorted.counts = [on, open];
-    child.len = open;
+    if !look {
+        return;
+    }
+    let left = std::mem::take(&mut child.len);
+    for first in (0..left).step_by(WIDTH) {
+        let column = child.load::<L>(first);
+        let [a, b, c, d, _] = column;
+        let (lower, upper) = bounds_at([a, b, c, d], nothing, place);
+        let [on_bits, open_bits] = classify(lower, upper);
+        let neurons = u32::MAX >> (32 - WIDTH.min(left - first));
+        on.append(on_bits & neurons, column);
+        // What is written is not beyond what was loaded.
+        child.append(open_bits & neurons, column);
+        open.append(open_bits & neurons, relaxed(column, lower, upper));
+    }
+}
+
+/// Open neurons as terms: between `lower` and `upper` relu(a) lies between slope * a and slope * a - slope * lower.
+#[inline(always)]
+fn relaxed<L: Lanes>([a, b, c, d, number]: [L; 5], lower: L, upper: L) -> [L; 6] {
+    let slope = upper.div(upper.sub(lower));
+    let spread = slope.mul(lower).mul(L::splat(-0.5));
+    [a.mul(slope), b.mul(slope), c.mul(slope), d.mul_add(slope, spread), spread, number]
 }

@@ -1,9 +1,10 @@
 //! The walk over the points' tree.
 
-use super::columns::sort;
+use super::bounds::Place;
+use super::columns::{sort, Columns};
 use super::leaf::{self, Activations};
 use super::node::{Level, Part};
-use super::rows::Rows;
+use super::rows::{add_columns, Rows};
 use super::whole::{Prepared, Whole, PACK};
 use crate::error::Error;
 use crate::logits::neural::{dense, network::Network};
@@ -65,79 +66,119 @@ pub(super) struct Workspace {
     /// Nodes that are made from the whole network, and rows of it.
     tops: Vec<Level>,
     rows: Rows,
+    /// The affine parts of those rows over the nodes above.
+    affines: Vec<Vec<[Aligned; 4]>>,
     /// One a level of the tree.
     levels: Vec<Level>,
     activations: Activations,
 }
 
+/// A node above those that are made from the whole network. It copies no rows: columns that are on in it are added to the rows'
+/// affine parts once for all nodes below.
+struct Stem {
+    above: Option<usize>,
+    /// Without rows.
+    part: Part,
+    /// Columns that are on here, and not above.
+    on: Columns,
+}
+
+/// A node that is made from the whole network, and what is above it; with an estimate of its bytes.
+struct Top {
+    node: Node,
+    above: Option<usize>,
+    bytes: usize,
+}
+
+/// Where to begin.
+#[derive(Default)]
+struct Found {
+    stems: Vec<Stem>,
+    tops: Vec<Top>,
+    /// Leaves over so large a box that a dense pass is better.
+    dense: Vec<Node>,
+    level: Level,
+}
+
 impl Walk<'_> {
     fn all(&self, progress: &mut Progress<'_>) -> Result<(), Error> {
-        let (mut tops, mut dense) = (Vec::new(), Vec::new());
-        self.find_tops(self.tree.root(), 0, &mut Level::default(), &mut tops, &mut dense);
+        let mut found = Found::default();
+        self.find(self.tree.root(), 0, None, &mut found);
+        let Found { stems, tops, dense, .. } = found;
         let groups = groups(&tops);
         let tasks = groups.len() + dense.len();
         for_each_task(tasks, 0.0..1.0, progress, |task, stop| match groups.get(task) {
-            Some(group) => self.group(group, stop),
+            Some(group) => self.group(group, &stems, stop),
             None => self.dense(dense[task - groups.len()]),
         })
     }
 
-    /// The nodes to make from the whole network, with an estimate of their bytes; and the leaves over so large a box that a
-    /// dense pass is better.
-    fn find_tops(
-        &self,
-        node: Node,
-        depth: usize,
-        level: &mut Level,
-        tops: &mut Vec<(Node, usize)>,
-        dense: &mut Vec<Node>,
-    ) {
-        let halves = node.halves();
-        if let (Some(halves), true) = (halves, depth < DEPTH) {
-            return halves.into_iter().for_each(|half| self.find_tops(half, depth + 1, level, tops, dense));
-        }
+    /// Finds what is at the top of the tree.
+    fn find(&self, node: Node, depth: usize, above: Option<usize>, found: &mut Found) {
+        let Found { stems, tops, dense, level } = found;
         let whole = self.whole;
-        sort(
-            self.simd,
-            &whole.part.columns,
-            self.tree.region(node),
-            &mut level.part.columns,
-            &mut level.sorted,
-        );
-        let columns = level.part.columns.len;
+        let parent = above.map_or(&whole.part, |stem| &stems[stem].part);
+        let (columns, sorted) = (&mut level.part.columns, &mut level.sorted);
+        let place = Place { region: self.tree.region(node), points: &[] };
+        sort(self.simd, &parent.columns, place, columns, sorted);
         // In the worst case all rows stay open.
         let rows = whole.rows() + WIDTH * whole.heads.groups;
-        let bytes = columns * rows * size_of::<f32>();
-        match halves {
-            _ if bytes <= MOST_PART => tops.push((node, bytes)),
-            Some(halves) => {
-                halves.into_iter().for_each(|half| self.find_tops(half, depth + 1, level, tops, dense))
+        let bytes = columns.len * rows * size_of::<f32>();
+        match node.halves() {
+            Some(halves) if depth < DEPTH || bytes > MOST_PART => {
+                let mut below = above;
+                // Further down they would be many.
+                if depth < DEPTH {
+                    let part = Part {
+                        columns: columns.clone(),
+                        output: whole.part.output.clone(),
+                        ..Part::default()
+                    };
+                    below = Some(stems.len());
+                    stems.push(Stem { above, part, on: sorted.on.clone() });
+                }
+                halves.into_iter().for_each(|half| self.find(half, depth + 1, below, found));
             }
-            None => dense.push(node),
+            _ if bytes <= MOST_PART => tops.push(Top { node, above, bytes }),
+            _ => dense.push(node),
         }
     }
 
     /// Makes nodes from the whole network, panel after panel of it, and evaluates them.
-    fn group(&self, nodes: &[(Node, usize)], stop: &(dyn Fn() -> bool + Sync)) {
+    fn group(&self, nodes: &[Top], stems: &[Stem], stop: &(dyn Fn() -> bool + Sync)) {
         let mut workspace = self.workspace();
-        let Workspace { tops, rows, .. } = &mut workspace;
+        let Workspace { tops, rows, affines, .. } = &mut workspace;
         tops.resize_with(nodes.len().max(tops.len()), Level::default);
-        let region = |at: usize| self.tree.region(nodes[at].0);
-        let panels = self.whole.rows().div_ceil(WIDTH);
-        for (at, level) in tops[..nodes.len()].iter_mut().enumerate() {
-            level.begin(self.simd, &self.whole.part, region(at), panels);
+        affines.resize_with(stems.len().max(affines.len()), Vec::new);
+        let all_rows = self.whole.rows();
+        let panels = all_rows.div_ceil(WIDTH);
+        let mut needed = vec![false; stems.len()];
+        for (Top { node, above, .. }, level) in nodes.iter().zip(&mut tops[..]) {
+            let parent = above.map_or(&self.whole.part, |stem| &stems[stem].part);
+            level.begin(self.simd, parent, self.place(*node, all_rows), panels);
+            let mut stem = *above;
+            while let Some(at) = stem {
+                needed[at] = true;
+                stem = stems[at].above;
+            }
         }
         for first in (0..panels).step_by(PACK) {
             if stop() {
                 return;
             }
             let rows = self.whole.panels(self.network, first, rows);
-            for (at, level) in tops[..nodes.len()].iter_mut().enumerate() {
-                level.absorb(self.simd, &self.whole.heads, rows, region(at));
+            for (at, stem) in stems.iter().enumerate().filter(|(at, _)| needed[*at]) {
+                let (before, here) = affines.split_at_mut(at);
+                let rows = stem.above.map_or(rows, |above| rows.with(&before[above]));
+                add_columns(self.simd, rows, &stem.on, &mut here[0]);
+            }
+            for (Top { node, above, .. }, level) in nodes.iter().zip(&mut tops[..]) {
+                let rows = above.map_or(rows, |above| rows.with(&affines[above]));
+                level.absorb(self.simd, &self.whole.heads, rows, self.place(*node, all_rows));
             }
         }
         let mut tasks = Vec::new();
-        for ((node, _), Level { part, .. }) in nodes.iter().zip(&tops[..]) {
+        for (Top { node, .. }, Level { part, .. }) in nodes.iter().zip(&tops[..]) {
             below(*node, |child| tasks.push((child, part)));
         }
         for_each_block(&mut tasks, 1, |_, task| {
@@ -149,6 +190,13 @@ impl Walk<'_> {
             self.keep(workspace);
         });
         self.keep(workspace);
+    }
+
+    /// Where the points of a node are, which is made from so many rows: the more, the sooner it is worth looking at each point.
+    fn place(&self, node: Node, rows: usize) -> Place<'_> {
+        let points = self.tree.points(node);
+        let worth = node.count == 1 || points.len() <= rows / 2;
+        Place { region: self.tree.region(node), points: if worth { points } else { &[] } }
     }
 
     fn workspace(&self) -> Workspace {
@@ -176,9 +224,9 @@ impl Walk<'_> {
         if stop() {
             return;
         }
-        let region = self.tree.region(node);
-        level.begin(self.simd, parent, region, parent.rows.panels());
-        level.absorb(self.simd, &self.whole.heads, parent.rows.all(), region);
+        let place = self.place(node, parent.rows.ids.len());
+        level.begin(self.simd, parent, place, parent.rows.panels());
+        level.absorb(self.simd, &self.whole.heads, parent.rows.all(), place);
         below(node, |child| self.descend(child, &level.part, levels, activations, stop));
     }
 
@@ -187,11 +235,11 @@ impl Walk<'_> {
         let rows = self.order.rows(self.tree, first..(first + LEAF).min(self.tree.len()));
         let mut ahead = rows.clone();
         let mut prefetch = || ahead.by_ref().take(AHEAD).for_each(|row| self.logits.prefetch(row));
-        let (region, parent_rows) = (self.tree.region(node), parent.rows.all());
+        let place = self.place(node, parent.rows.ids.len());
         prefetch();
-        level.begin(self.simd, parent, region, 0);
+        level.begin(self.simd, parent, place, 0);
         prefetch();
-        level.resolve(self.simd, &self.whole.heads, parent_rows, region);
+        level.resolve(self.simd, &self.whole.heads, parent.rows.all(), place);
         prefetch();
         prefetch();
         // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
@@ -203,15 +251,7 @@ impl Walk<'_> {
         for (block, x) in x.iter_mut().enumerate() {
             *x = self.tree.block(first + WIDTH * block);
         }
-        leaf::evaluate(
-            self.simd,
-            level,
-            parent_rows,
-            &self.whole.heads,
-            x,
-            activations,
-            &mut logits[..count],
-        );
+        leaf::evaluate(self.simd, level, &self.whole.heads, x, activations, &mut logits[..count]);
     }
 
     fn dense(&self, node: Node) {
@@ -223,12 +263,12 @@ impl Walk<'_> {
 }
 
 /// Nodes in groups of about as many bytes each: so many groups that none is too large, and that each thread has as many to do.
-fn groups(nodes: &[(Node, usize)]) -> Vec<&[(Node, usize)]> {
-    let all: u64 = nodes.iter().map(|(_, bytes)| *bytes as u64).sum();
+fn groups(nodes: &[Top]) -> Vec<&[Top]> {
+    let all: u64 = nodes.iter().map(|top| top.bytes as u64).sum();
     let count = all.div_ceil(MOST_GROUP).max(nodes.len().div_ceil(GROUP) as u64).max(1);
     let share = all.div_ceil(count.next_multiple_of(threads() as u64)).max(1);
     let (mut groups, mut first, mut before) = (Vec::new(), 0, 0);
-    for (at, (_, bytes)) in nodes.iter().enumerate() {
+    for (at, Top { bytes, .. }) in nodes.iter().enumerate() {
         let now = before + *bytes as u64;
         if now / share > before / share || at + 1 == nodes.len() {
             groups.push(&nodes[first..=at]);

@@ -1,8 +1,8 @@
 //! Neurons that are on become part of the output's affine map.
 
-use super::columns::{Sorted, Term};
+use super::columns::Sorted;
 use super::node::{Heads, Part};
-use super::rows::{loads, splats, stores, Block, Bounded};
+use super::rows::{loads, stores, Bounded, COLUMNS};
 use crate::simd::{multiversion, Aligned, Lanes, WIDTH};
 
 multiversion! {
@@ -12,7 +12,7 @@ multiversion! {
 
 #[inline(always)]
 fn inherit_body<L: Lanes>(parent: &Part, sorted: &Sorted, child: &mut Part) {
-    let (groups, columns) = (parent.output.len(), sorted.open().len());
+    let (groups, columns) = (parent.output.len(), sorted.open.len);
     child.output.clear();
     child.output.extend_from_slice(&parent.output);
     let through = &mut child.through;
@@ -22,19 +22,18 @@ fn inherit_body<L: Lanes>(parent: &Part, sorted: &Sorted, child: &mut Part) {
         through.fill(Aligned::ZERO);
         return;
     }
-    for (through, term) in through.chunks_exact_mut(groups).zip(sorted.open()) {
-        let from = &parent.through[term.column as usize * groups..][..groups];
+    for (through, column) in through.chunks_exact_mut(groups).zip(sorted.open.plane(5)) {
+        let from = &parent.through[column.to_bits() as usize * groups..][..groups];
         for (to, from) in through.iter_mut().zip(from) {
             *to = Aligned(L::load(&from.0).store());
         }
     }
     for (group, output) in child.output.iter_mut().enumerate() {
         let mut sum = loads::<L>(output);
-        for term in sorted.on() {
-            let weights = L::load(&parent.through[term.column as usize * groups + group].0);
-            let map = splats::<L>(&term.map);
+        for (t, column) in sorted.on.plane(4).iter().enumerate() {
+            let weights = L::load(&parent.through[column.to_bits() as usize * groups + group].0);
             for k in 0..4 {
-                sum[k] = weights.mul_add(map[k], sum[k]);
+                sum[k] = weights.mul_add(L::splat(sorted.on.plane(k)[t]), sum[k]);
             }
         }
         *output = stores(sum);
@@ -42,26 +41,21 @@ fn inherit_body<L: Lanes>(parent: &Part, sorted: &Sorted, child: &mut Part) {
 }
 
 multiversion! {
-    /// Adds what the block's rows that are on give: their affine parts to `output`, their open columns' weights to `through`.
+    /// Adds what rows that are on give: their affine parts to `output`, the weights of their `open` columns to `through`.
     pub(super) fn fold(
         heads: &Heads,
-        block: Block<'_>,
         bounded: &Bounded,
-        open: &[Term],
+        open: usize,
         output: &mut [[Aligned; 4]],
         through: &mut [Aligned],
     ) = fold_body
 }
 
-/// Columns of `V` that rows are added to at a time.
-const COLUMNS: usize = 8;
-
 #[inline(always)]
 fn fold_body<L: Lanes>(
     heads: &Heads,
-    block: Block<'_>,
     bounded: &Bounded,
-    open: &[Term],
+    open: usize,
     output: &mut [[Aligned; 4]],
     through: &mut [Aligned],
 ) {
@@ -69,7 +63,6 @@ fn fold_body<L: Lanes>(
         return;
     }
     let groups = heads.groups;
-    assert!(open.iter().all(|term| (term.column as usize) < block.columns));
     for (group, output) in output.iter_mut().enumerate() {
         let weights = |id: u32| L::load(&heads.weights[id as usize * groups + group].0);
         let mut sum = loads::<L>(output);
@@ -82,23 +75,18 @@ fn fold_body<L: Lanes>(
         }
         *output = stores(sum);
 
-        for (index, open) in open.chunks(COLUMNS).enumerate() {
-            // The last columns may be done twice, but are stored once.
-            let mut columns = [0; COLUMNS];
-            for c in 0..COLUMNS {
-                columns[c] = open[c.min(open.len() - 1)].column as usize;
-            }
+        for first in (0..open).step_by(COLUMNS) {
             let mut sum = [L::splat(0.0); COLUMNS];
             for row in &bounded.on {
-                let (weights, panel) = (weights(row.id), block.panel(row.panel as usize));
+                let (weights, panel) =
+                    (weights(row.id), &bounded.panel(row.panel as usize)[first..][..COLUMNS]);
                 for c in 0..COLUMNS {
-                    // SAFETY: a panel has all of the block's columns, and those of `open` are among them, as asserted.
-                    let number = unsafe { panel.get_unchecked(columns[c]) }.0[row.lane as usize % WIDTH];
+                    let number = panel[c].0[row.lane as usize % WIDTH];
                     sum[c] = L::splat(number).mul_add(weights, sum[c]);
                 }
             }
-            for c in 0..open.len() {
-                let through = &mut through[(index * COLUMNS + c) * groups + group];
+            for c in 0..COLUMNS.min(open - first) {
+                let through = &mut through[(first + c) * groups + group];
                 *through = Aligned(L::load(&through.0).add(sum[c]).store());
             }
         }

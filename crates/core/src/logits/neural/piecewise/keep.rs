@@ -1,19 +1,18 @@
 //! Rows that stay open move together, so that no lane is empty.
 
-use super::columns::Term;
-use super::rows::{Block, Bounded, Row, Rows};
+use super::rows::{Bounded, Row, Rows};
 use crate::simd::{multiversion, Aligned, Lanes, WIDTH};
 
 multiversion! {
-    /// Appends the open rows of the block to those of a child, and of their columns the open ones.
-    pub(super) fn keep(block: Block<'_>, bounded: &Bounded, open: &[Term], rows: &mut Rows) = keep_body
+    /// Appends the open rows of a block to those of a child, with their open columns.
+    pub(super) fn keep(bounded: &Bounded, rows: &mut Rows) = keep_body
 }
 
 /// Panels that rows are taken from at a time.
 const SOURCES: usize = 3;
 
 #[inline(always)]
-fn keep_body<L: Lanes>(block: Block<'_>, bounded: &Bounded, open: &[Term], rows: &mut Rows) {
+fn keep_body<L: Lanes>(bounded: &Bounded, rows: &mut Rows) {
     let mut rest = &bounded.open[..];
     while !rest.is_empty() {
         let place = rows.ids.len() % WIDTH;
@@ -31,12 +30,12 @@ fn keep_body<L: Lanes>(block: Block<'_>, bounded: &Bounded, open: &[Term], rows:
         }
         let to = rows.last_panel();
         match (sources.count, place) {
-            (1, 0) => sources.put_columns::<1, true>(block, open, to),
-            (2, 0) => sources.put_columns::<2, true>(block, open, to),
-            (_, 0) => sources.put_columns::<SOURCES, true>(block, open, to),
-            (1, _) => sources.put_columns::<1, false>(block, open, to),
-            (2, _) => sources.put_columns::<2, false>(block, open, to),
-            (_, _) => sources.put_columns::<SOURCES, false>(block, open, to),
+            (1, 0) => sources.put_columns::<1, true>(bounded, to),
+            (2, 0) => sources.put_columns::<2, true>(bounded, to),
+            (_, 0) => sources.put_columns::<SOURCES, true>(bounded, to),
+            (1, _) => sources.put_columns::<1, false>(bounded, to),
+            (2, _) => sources.put_columns::<2, false>(bounded, to),
+            (_, _) => sources.put_columns::<SOURCES, false>(bounded, to),
         }
     }
 }
@@ -94,20 +93,15 @@ impl<L: Lanes> Sources<L> {
 
     /// The same for each of the open columns; where `NEW`, whatever is there is lost.
     #[inline(always)]
-    fn put_columns<const COUNT: usize, const NEW: bool>(
-        &self,
-        block: Block<'_>,
-        open: &[Term],
-        to: &mut [Aligned],
-    ) {
-        let mut from = [block.panel(self.panels[0]); COUNT];
+    fn put_columns<const COUNT: usize, const NEW: bool>(&self, bounded: &Bounded, to: &mut [Aligned]) {
+        let mut from = [bounded.panel(self.panels[0]); COUNT];
         for s in 0..COUNT {
-            from[s] = block.panel(self.panels[s]);
+            from[s] = &bounded.panel(self.panels[s])[..to.len()];
         }
-        for (to, term) in to.iter_mut().zip(open) {
+        for (c, to) in to.iter_mut().enumerate() {
             let mut value = if NEW { L::splat(0.0) } else { L::load(&to.0) };
             for s in 0..COUNT {
-                let from = L::load(&from[s][term.column as usize].0).permute(self.places[s]);
+                let from = L::load(&from[s][c].0).permute(self.places[s]);
                 value = L::select(self.wanted[s], from, value);
             }
             *to = Aligned(value.store());

@@ -3,9 +3,8 @@
 //! Neurons are evaluated with points in lanes, some rows of layer 2 and all points at a time, so that a weight that was loaded
 //! serves them all. Logits are added up with outputs in lanes, some points at a time: so they come out point by point.
 
-use super::columns::Term;
 use super::node::{Heads, Level};
-use super::rows::{loads, Block, Row};
+use super::rows::{loads, Row};
 use crate::simd::{multiversion, Aligned, Lanes, WIDTH};
 use crate::tree::LEAF_BLOCKS;
 
@@ -27,12 +26,10 @@ pub(super) struct Activations {
 }
 
 multiversion! {
-    /// Evaluates what is left over a leaf at its points `x`, and writes the logits of each into its row. The weights of its open
-    /// rows, which are needed but once, are read where they are: among the parent's.
+    /// Evaluates what is left over a leaf at its points `x`, and writes the logits of each into its row.
     pub(super) fn evaluate(
         leaf: &Level,
-        parent: Block<'_>,
-        heads: &Heads,
+            heads: &Heads,
         x: &[[Aligned; 3]],
         activations: &mut Activations,
         logits: &mut [&mut [f32]],
@@ -42,21 +39,20 @@ multiversion! {
 #[inline(always)]
 fn evaluate_body<L: Lanes>(
     leaf: &Level,
-    parent: Block<'_>,
     heads: &Heads,
     x: &[[Aligned; 3]],
     activations: &mut Activations,
     logits: &mut [&mut [f32]],
 ) {
-    let (columns, rows) = (leaf.sorted.open().len(), leaf.bounded.open.len());
+    let (columns, rows) = (leaf.sorted.open.len, leaf.bounded.open.len());
     let Activations { hidden: h, rows: z } = activations;
     h.resize(columns.max(h.len()), NO_POINTS);
     z.resize(rows.next_multiple_of(ROWS).max(z.len()), NO_POINTS);
     let (h, z) = (&mut h[..columns], &mut z[..rows.next_multiple_of(ROWS)]);
     if L::REGISTERS >= 32 && x.len() == LEAF_BLOCKS {
-        neurons::<L, LEAF_BLOCKS>(leaf, parent, x, 0, h, z);
+        neurons::<L, LEAF_BLOCKS>(leaf, x, 0, h, z);
     } else {
-        (0..x.len()).for_each(|block| neurons::<L, 1>(leaf, parent, x, block, h, z));
+        (0..x.len()).for_each(|block| neurons::<L, 1>(leaf, x, block, h, z));
     }
 
     let sources = Sources { leaf, heads, x, hidden: h, rows: z };
@@ -79,7 +75,6 @@ fn evaluate_body<L: Lanes>(
 #[inline(always)]
 fn neurons<L: Lanes, const B: usize>(
     leaf: &Level,
-    parent: Block<'_>,
     x: &[[Aligned; 3]],
     first: usize,
     hidden: &mut [Points],
@@ -91,32 +86,40 @@ fn neurons<L: Lanes, const B: usize>(
             points[b][k] = L::load(&x[first + b][k].0);
         }
     }
-    for (planes, hidden) in leaf.part.columns.planes.iter().zip(hidden.chunks_mut(WIDTH)) {
-        for (j, hidden) in hidden.iter_mut().enumerate() {
-            for b in 0..B {
-                hidden[first + b] = Aligned(affine(planes, j, points[b]).max(L::splat(0.0)).store());
-            }
+    let columns = &leaf.part.columns;
+    for (j, hidden) in hidden.iter_mut().enumerate() {
+        let mut map = [0.0; 4];
+        for k in 0..4 {
+            map[k] = columns.plane(k)[j];
+        }
+        for b in 0..B {
+            hidden[first + b] = Aligned(affine(map, points[b]).max(L::splat(0.0)).store());
         }
     }
-    let (open, affines) = (leaf.sorted.open(), &leaf.bounded.affine);
+    let bounded = &leaf.bounded;
+    let affines = &bounded.affine;
     for (which, out) in leaf.bounded.open.chunks(ROWS).zip(rows.chunks_exact_mut(ROWS)) {
         // A shorter last chunk repeats its last row, which nobody asks for.
-        let (mut weights, mut lanes) = ([parent.panel(0); ROWS], [0; ROWS]);
+        let (mut weights, mut lanes) = ([bounded.panel(0); ROWS], [0; ROWS]);
         let mut sum = [[L::splat(0.0); B]; ROWS];
         for r in 0..ROWS {
             let Row { panel, lane, .. } = which[r.min(which.len() - 1)];
-            (weights[r], lanes[r]) = (parent.panel(panel as usize), lane as usize % WIDTH);
+            (weights[r], lanes[r]) = (&bounded.panel(panel as usize)[..hidden.len()], lane as usize % WIDTH);
+            let mut map = [0.0; 4];
+            for k in 0..4 {
+                map[k] = affines[panel as usize][k].0[lanes[r]];
+            }
             for b in 0..B {
-                sum[r][b] = affine(&affines[panel as usize], lanes[r], points[b]);
+                sum[r][b] = affine(map, points[b]);
             }
         }
-        for (Term { column, .. }, hidden) in open.iter().zip(&*hidden) {
+        for (c, hidden) in hidden.iter().enumerate() {
             let mut inputs = [L::splat(0.0); B];
             for b in 0..B {
                 inputs[b] = L::load(&hidden[first + b].0);
             }
             for r in 0..ROWS {
-                let weight = L::splat(weights[r][*column as usize].0[lanes[r]]);
+                let weight = L::splat(weights[r][c].0[lanes[r]]);
                 for b in 0..B {
                     sum[r][b] = weight.mul_add(inputs[b], sum[r][b]);
                 }
@@ -130,12 +133,12 @@ fn neurons<L: Lanes, const B: usize>(
     }
 }
 
-/// Map `r` of `maps` at the points `x`.
+/// An affine map at the points `x`.
 #[inline(always)]
-fn affine<L: Lanes>(maps: &[Aligned; 4], r: usize, x: [L; 3]) -> L {
-    let value = x[0].mul_add(L::splat(maps[0].0[r]), L::splat(maps[3].0[r]));
-    let value = x[1].mul_add(L::splat(maps[1].0[r]), value);
-    x[2].mul_add(L::splat(maps[2].0[r]), value)
+fn affine<L: Lanes>(map: [f32; 4], x: [L; 3]) -> L {
+    let value = x[0].mul_add(L::splat(map[0]), L::splat(map[3]));
+    let value = x[1].mul_add(L::splat(map[1]), value);
+    x[2].mul_add(L::splat(map[2]), value)
 }
 
 /// What logits are made of.

@@ -9,13 +9,14 @@
 //! o   = A x + c + sum_{j open} V_j h_j + sum_{i open} U_i relu(z_i)
 //!
 //! descend(node of the points' tree, what its parent left open):
-//!     bound each open column over the box: on -> fold into a_i, c_i, A, c; off -> drop
+//!     bound each open column over the box, or at its points if they are few: on -> fold into a_i, c_i, A, c; off -> drop
 //!     bound each open row: on -> fold into A, c, V; off -> drop
 //!     at a leaf evaluate what is left, else keep it together and descend into the nodes some levels below
 //! ```
 //!
-//! The top of the tree is not worth inheriting from: all nodes of some depth are made from the whole network at once, so that layer 2
-//! is read but once. Nor are two of three levels below. The result is exact up to rounding, and does not depend on the threads.
+//! At the top of the tree copies are not worth it: all nodes of some depth are made from the whole network at once, so that layer 2
+//! is read but once, and inherit from those above only the columns that are on. Nor are they at two of three levels below. The
+//! result is exact up to rounding, and does not depend on the threads.
 //!
 //! Bounds: intervals as in Gowal et al., "On the effectiveness of interval bound propagation", 2018; for layer 2 with the linear
 //! relaxation of ReLU of Zhang et al., "Efficient neural network robustness certification with general activation functions" (CROWN), 2018.
@@ -30,6 +31,7 @@ mod fold;
 mod keep;
 mod leaf;
 mod node;
+mod planes;
 mod rows;
 mod whole;
 

@@ -1,11 +1,11 @@
 //! What is left of the network over a box.
 
+use super::bounds::Place;
 use super::columns::{sort, Columns, Sorted};
 use super::fold::{fold, inherit};
 use super::keep::keep;
 use super::rows::{bound, Block, Bounded, Rows};
 use crate::simd::{Aligned, Simd};
-use crate::tree::Region;
 
 /// `o = A x + c + sum_{j open} V_j relu(w_j x + b_j) + sum_{i open} U_i relu(z_i)`.
 #[derive(Default)]
@@ -38,23 +38,27 @@ pub(super) struct Level {
 impl Level {
     /// Starts from what the parent left open of layer 1; its rows, of so many panels at most, are then to be
     /// [absorbed](Level::absorb).
-    pub(super) fn begin(&mut self, simd: Simd, parent: &Part, region: &Region, panels: usize) {
+    pub(super) fn begin(&mut self, simd: Simd, parent: &Part, place: Place<'_>, panels: usize) {
         let Level { part, sorted, .. } = self;
-        sort(simd, &parent.columns, region, &mut part.columns, sorted);
+        sort(simd, &parent.columns, place, &mut part.columns, sorted);
         part.rows.clear(part.columns.len, panels);
         inherit(simd, parent, sorted, part);
+        // From here on they are its own.
+        for (number, column) in part.columns.plane_mut(4).iter_mut().enumerate() {
+            *column = f32::from_bits(number as u32);
+        }
     }
 
     /// Takes over rows of the parent: those that are on become part of the output, open ones stay.
-    pub(super) fn absorb(&mut self, simd: Simd, heads: &Heads, rows: Block<'_>, region: &Region) {
-        self.resolve(simd, heads, rows, region);
-        keep(simd, rows, &self.bounded, self.sorted.open(), &mut self.part.rows);
+    pub(super) fn absorb(&mut self, simd: Simd, heads: &Heads, rows: Block<'_>, place: Place<'_>) {
+        self.resolve(simd, heads, rows, place);
+        keep(simd, &self.bounded, &mut self.part.rows);
     }
 
     /// Makes those rows of the parent that are on part of the output. Which ones are open is left in `bounded`.
-    pub(super) fn resolve(&mut self, simd: Simd, heads: &Heads, rows: Block<'_>, region: &Region) {
+    pub(super) fn resolve(&mut self, simd: Simd, heads: &Heads, rows: Block<'_>, place: Place<'_>) {
         let Level { part, sorted, bounded } = self;
-        bound(simd, rows, sorted, region, bounded);
-        fold(simd, heads, rows, bounded, sorted.open(), &mut part.output, &mut part.through);
+        bound(simd, rows, sorted, place, bounded);
+        fold(simd, heads, bounded, sorted.open.len, &mut part.output, &mut part.through);
     }
 }

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::bounds::{bounds, classify, lanes_of};
-use super::columns::Sorted;
+use super::bounds::{bounds, bounds_at, classify, Place, MANY};
+use super::columns::{Columns, Sorted};
+use super::planes::Planes;
 use crate::memory::filled;
 use crate::simd::{multiversion, Aligned, Lanes, WIDTH};
-use crate::tree::Region;
 
 /// Rows of layer 2, in panels of 16.
 #[derive(Default)]
@@ -88,6 +88,14 @@ pub(super) struct Block<'a> {
 }
 
 impl<'a> Block<'a> {
+    /// The same rows with other affine parts.
+    pub(super) fn with<'b>(self, affine: &'b [[Aligned; 4]]) -> Block<'b>
+    where
+        'a: 'b,
+    {
+        Block { affine, ..self }
+    }
+
     /// The weights of one panel.
     #[inline(always)]
     pub(super) fn panel(&self, panel: usize) -> &'a [Aligned] {
@@ -112,27 +120,136 @@ pub(super) struct Bounded {
     /// Which rows are on, and which open; the others are off.
     pub on: Vec<Row>,
     pub open: Vec<Row>,
+    /// Panel by panel, the weights of the open columns, side by side: what is done with them next then finds them in the cache.
+    /// It only grows.
+    weights: Vec<Aligned>,
+    /// Columns of it, with those that fill the last few, where anything may be.
+    columns: usize,
+    /// Of each open row an affine map, how far the row may be from it, and the bits of its place in the block.
+    relaxed: Planes<6>,
+    /// The bits of the places of the rows that are on.
+    places: Planes<1>,
+}
+
+/// Columns of a [`Bounded`] are a multiple of this.
+pub(super) const COLUMNS: usize = 16;
+
+impl Bounded {
+    /// The weights of one panel.
+    #[inline(always)]
+    pub(super) fn panel(&self, panel: usize) -> &[Aligned] {
+        &self.weights[panel * self.columns..][..self.columns]
+    }
+}
+
+multiversion! {
+    /// The affine parts of the block's rows with columns that are on.
+    pub(super) fn add_columns(block: Block<'_>, on: &Columns, affine: &mut Vec<[Aligned; 4]>) = add_columns_body
+}
+
+#[inline(always)]
+fn add_columns_body<L: Lanes>(block: Block<'_>, on: &Columns, affine: &mut Vec<[Aligned; 4]>) {
+    affine.clear();
+    let panels = block.affine.len();
+    while affine.len() < panels {
+        match panels - affine.len() {
+            2.. => add_to_panels::<L, 2>(block, on, affine),
+            _ => add_to_panels::<L, 1>(block, on, affine),
+        }
+    }
+}
+
+#[inline(always)]
+fn add_to_panels<L: Lanes, const P: usize>(block: Block<'_>, on: &Columns, affine: &mut Vec<[Aligned; 4]>) {
+    let (matrix, mut maps) = panels::<L, P>(block, affine.len());
+    add_on(&matrix, on, &mut maps);
+    for p in 0..P {
+        affine.push(stores(maps[p]));
+    }
+}
+
+/// The weights and the affine parts of the `P` panels from `first` on.
+#[inline(always)]
+fn panels<'a, L: Lanes, const P: usize>(block: Block<'a>, first: usize) -> ([&'a [Aligned]; P], [[L; 4]; P]) {
+    let mut matrix = [block.panel(first); P];
+    let mut maps = [[L::splat(0.0); 4]; P];
+    for p in 0..P {
+        matrix[p] = block.panel(first + p);
+        maps[p] = loads(&block.affine[first + p]);
+    }
+    (matrix, maps)
+}
+
+/// Adds columns that are on to affine parts of `P` panels.
+#[inline(always)]
+fn add_on<L: Lanes, const P: usize>(matrix: &[&[Aligned]; P], on: &Columns, maps: &mut [[L; 4]; P]) {
+    let [w0, w1, w2, bias, columns] = [on.plane(0), on.plane(1), on.plane(2), on.plane(3), on.plane(4)];
+    for t in 0..columns.len() {
+        let map = splats::<L>(&[w0[t], w1[t], w2[t], bias[t]]);
+        for p in 0..P {
+            let weights = L::load(&matrix[p][columns[t].to_bits() as usize].0);
+            for k in 0..4 {
+                maps[p][k] = weights.mul_add(map[k], maps[p][k]);
+            }
+        }
+    }
 }
 
 multiversion! {
     /// Folds the columns that are on into the affine parts of the block's rows, and bounds the rows over the box.
-    pub(super) fn bound(block: Block<'_>, sorted: &Sorted, region: &Region, bounded: &mut Bounded) = bound_body
+    pub(super) fn bound(
+        block: Block<'_>,
+        sorted: &Sorted,
+        place: Place<'_>,
+        bounded: &mut Bounded,
+    ) = bound_body
 }
 
 #[inline(always)]
-fn bound_body<L: Lanes>(block: Block<'_>, sorted: &Sorted, region: &Region, bounded: &mut Bounded) {
+fn bound_body<L: Lanes>(block: Block<'_>, sorted: &Sorted, place: Place<'_>, bounded: &mut Bounded) {
     bounded.affine.clear();
     bounded.on.clear();
     bounded.open.clear();
+    bounded.relaxed.clear(WIDTH * block.affine.len());
+    bounded.places.clear(WIDTH * block.affine.len());
+    bounded.columns = sorted.open.len.next_multiple_of(COLUMNS);
+    let needed = bounded.columns * block.affine.len();
+    bounded.weights.resize(needed.max(bounded.weights.len()), Aligned::ZERO);
     let (mut p, panels) = (0, block.affine.len());
     // Several panels at a time, so that there are more sums than an addition takes cycles: as many as there are registers for.
     while p < panels {
         p += match panels - p {
-            4 | 6.. if L::REGISTERS >= 32 => bound_panels::<L, 4>(block, p, sorted, region, bounded),
-            3 | 5 if L::REGISTERS >= 32 => bound_panels::<L, 3>(block, p, sorted, region, bounded),
-            1 => bound_panels::<L, 1>(block, p, sorted, region, bounded),
-            _ => bound_panels::<L, 2>(block, p, sorted, region, bounded),
+            3 | 5.. if L::REGISTERS >= 32 => bound_panels::<L, 3>(block, p, sorted, place, bounded),
+            1 => bound_panels::<L, 1>(block, p, sorted, place, bounded),
+            _ => bound_panels::<L, 2>(block, p, sorted, place, bounded),
         };
+    }
+    if !place.points.is_empty() && sorted.open.len >= MANY {
+        bound_at::<L>(place, bounded);
+    }
+    let Bounded { on, open, relaxed, places, .. } = bounded;
+    for (rows, places) in [(on, places.plane(0)), (open, relaxed.plane(5))] {
+        rows.extend(places.iter().map(|place| {
+            let place = place.to_bits();
+            Row { panel: place / WIDTH as u32, lane: place % WIDTH as u32, id: block.ids[place as usize] }
+        }));
+    }
+}
+
+/// Of the rows that the box leaves open, those that the points leave open stay so.
+#[inline(always)]
+fn bound_at<L: Lanes>(here: Place<'_>, bounded: &mut Bounded) {
+    let Bounded { relaxed, places, .. } = bounded;
+    let left = std::mem::take(&mut relaxed.len);
+    for first in (0..left).step_by(WIDTH) {
+        let row = relaxed.load::<L>(first);
+        let [a, b, c, d, spread, place] = row;
+        let (lower, upper) = bounds_at([a, b, c, d], spread, here);
+        let [on, open] = classify(lower, upper);
+        let rows = u32::MAX >> (32 - WIDTH.min(left - first));
+        places.append(on & rows, [place]);
+        // What is written is not beyond what was loaded.
+        relaxed.append(open & rows, row);
     }
 }
 
@@ -142,48 +259,46 @@ fn bound_panels<L: Lanes, const P: usize>(
     block: Block<'_>,
     first: usize,
     sorted: &Sorted,
-    region: &Region,
+    place: Place<'_>,
     bounded: &mut Bounded,
 ) -> usize {
-    let mut matrix = [block.panel(first); P];
-    let mut maps = [[L::splat(0.0); 4]; P];
-    for p in 0..P {
-        matrix[p] = block.panel(first + p);
-        maps[p] = loads(&block.affine[first + p]);
-    }
-    for term in sorted.on() {
-        let map = splats::<L>(&term.map);
-        for p in 0..P {
-            let weights = L::load(&matrix[p][term.column as usize].0);
-            for k in 0..4 {
-                maps[p][k] = weights.mul_add(map[k], maps[p][k]);
-            }
-        }
-    }
+    let (matrix, mut maps) = panels::<L, P>(block, first);
+    add_on(&matrix, &sorted.on, &mut maps);
     for p in 0..P {
         bounded.affine.push(stores(maps[p]));
     }
     let mut spreads = [L::splat(0.0); P];
-    for term in sorted.open() {
-        let map = splats::<L>(&term.map);
-        let spread = L::splat(term.spread);
+    let columns = bounded.columns;
+    let kept = &mut bounded.weights[columns * first..][..columns * P];
+    let open = &sorted.open;
+    let [w0, w1, w2, bias] = [open.plane(0), open.plane(1), open.plane(2), open.plane(3)];
+    let [spread, numbers] = [open.plane(4), open.plane(5)];
+    for t in 0..numbers.len() {
+        let (map, spread) = (splats::<L>(&[w0[t], w1[t], w2[t], bias[t]]), L::splat(spread[t]));
+        let column = numbers[t].to_bits() as usize;
         for p in 0..P {
-            let weights = L::load(&matrix[p][term.column as usize].0);
+            let weights = L::load(&matrix[p][column].0);
             for k in 0..4 {
                 maps[p][k] = weights.mul_add(map[k], maps[p][k]);
             }
             spreads[p] = weights.abs().mul_add(spread, spreads[p]);
+            kept[columns * p + t] = Aligned(weights.store());
         }
     }
     for p in 0..P {
-        let (lower, upper) = bounds(maps[p], spreads[p], region);
+        let (lower, upper) = bounds(maps[p], spreads[p], place.region);
         let [on, open] = classify(lower, upper);
         // The last panel may have lanes without rows.
-        let ids = &block.ids[WIDTH * (first + p)..];
-        let rows = u32::MAX >> (32 - WIDTH.min(ids.len()));
-        let row = |lane: usize| Row { panel: (first + p) as u32, lane: lane as u32, id: ids[lane] };
-        bounded.on.extend(lanes_of(on & rows).map(row));
-        bounded.open.extend(lanes_of(open & rows).map(row));
+        let before = WIDTH * (first + p);
+        let rows = u32::MAX >> (32 - WIDTH.min(block.ids.len() - before));
+        let mut places = [0.0; WIDTH];
+        for lane in 0..WIDTH {
+            places[lane] = f32::from_bits((before + lane) as u32);
+        }
+        let places = L::load(&places);
+        bounded.places.append(on & rows, [places]);
+        let [a, b, c, d] = maps[p];
+        bounded.relaxed.append(open & rows, [a, b, c, d, spreads[p], places]);
     }
     P
 }

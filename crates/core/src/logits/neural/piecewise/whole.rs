@@ -62,16 +62,15 @@ impl Whole {
     pub(super) fn new(network: &Network) -> Whole {
         let [layer1, layer2, layer3] = network.layers();
         let dim = network.dim();
-        let mut columns = Columns {
-            len: layer1.outputs(),
-            planes: vec![[Aligned::ZERO; 4]; layer1.outputs().div_ceil(WIDTH)],
-        };
+        let mut columns = Columns::default();
+        columns.clear(layer1.outputs());
+        columns.len = layer1.outputs();
         for (j, (row, b)) in layer1.weight.chunks_exact(dim).zip(&layer1.bias).enumerate() {
-            let planes = &mut columns.planes[j / WIDTH];
-            for (plane, w) in planes.iter_mut().zip(row) {
-                plane.0[j % WIDTH] = *w;
+            for (k, w) in row.iter().enumerate() {
+                columns.plane_mut(k)[j] = *w;
             }
-            planes[3].0[j % WIDTH] = *b;
+            columns.plane_mut(3)[j] = *b;
+            columns.plane_mut(4)[j] = f32::from_bits(j as u32);
         }
         let (outputs, rows) = (layer3.outputs(), layer2.outputs());
         let groups = outputs.div_ceil(WIDTH);
