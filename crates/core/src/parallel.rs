@@ -2,13 +2,14 @@
 
 use std::marker::PhantomData;
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 #[cfg(feature = "threads")]
 use std::{
     sync::{
         atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed},
-        Condvar, Mutex, PoisonError,
+        Condvar,
     },
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use crate::error::Error;
@@ -49,13 +50,7 @@ pub(crate) fn for_each_block<T: Send>(
     size: usize,
     work: impl Fn(usize, &mut [T]) + Sync + Send,
 ) {
-    // One block is done sooner than another thread has begun.
-    #[cfg(feature = "threads")]
-    if out.len() > size {
-        use rayon::prelude::*;
-        return out.par_chunks_mut(size).enumerate().for_each(|(index, block)| work(index, block));
-    }
-    out.chunks_mut(size).enumerate().for_each(|(index, block)| work(index, block));
+    for_each_piece(out.chunks_mut(size), work);
 }
 
 /// The same for two slices that are cut in step: `size_a` elements of `a` belong to `size_b` of `b`.
@@ -66,16 +61,28 @@ pub(crate) fn for_each_block_pair<A: Send, B: Send>(
     size_b: usize,
     work: impl Fn(usize, &mut [A], &mut [B]) + Sync + Send,
 ) {
+    for_each_piece(a.chunks_mut(size_a).zip(b.chunks_mut(size_b)), |index, (a, b)| work(index, a, b));
+}
+
+/// Calls `work(index, piece)` for each of the pieces.
+fn for_each_piece<P: Send>(
+    pieces: impl ExactSizeIterator<Item = P> + Send,
+    work: impl Fn(usize, P) + Sync + Send,
+) {
+    // One is done sooner than another thread has begun.
     #[cfg(feature = "threads")]
-    if a.len() > size_a {
-        use rayon::prelude::*;
-        return a
-            .par_chunks_mut(size_a)
-            .zip(b.par_chunks_mut(size_b))
-            .enumerate()
-            .for_each(|(index, (a, b))| work(index, a, b));
+    if pieces.len() > 1 {
+        let helpers = threads().min(pieces.len()) - 1;
+        let pieces = Mutex::new(pieces.enumerate());
+        let next = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let run = || std::iter::from_fn(next).for_each(|(index, piece)| work(index, piece));
+        // The calling thread begins at once: to wake another one may take as long as a frame.
+        return rayon::in_place_scope(|scope| {
+            (0..helpers).for_each(|_| scope.spawn(|_| run()));
+            run();
+        });
     }
-    a.chunks_mut(size_a).zip(b.chunks_mut(size_b)).enumerate().for_each(|(index, (a, b))| work(index, a, b));
+    pieces.enumerate().for_each(|(index, piece)| work(index, piece));
 }
 
 /// What `each` says of the blocks of `size` elements, all of it put together by `both`, in no order; `None` of nothing.
@@ -85,12 +92,16 @@ pub(crate) fn of_blocks<T: Sync, R: Send>(
     each: impl Fn(&[T]) -> R + Sync + Send,
     both: impl Fn(R, R) -> R + Sync + Send,
 ) -> Option<R> {
-    #[cfg(feature = "threads")]
-    if of.len() > size {
-        use rayon::prelude::*;
-        return of.par_chunks(size).map(each).reduce_with(both);
-    }
-    of.chunks(size).map(each).reduce(both)
+    let all = Mutex::new(None);
+    for_each_piece(of.chunks(size), |_, block| {
+        let one = each(block);
+        let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+        *all = Some(match all.take() {
+            Some(others) => both(others, one),
+            None => one,
+        });
+    });
+    all.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Whether `test` holds for one of the elements. (Sooner said of many together than of each in turn.)
@@ -112,27 +123,37 @@ pub(crate) fn for_each_task(
     #[cfg(feature = "threads")]
     {
         let queue = Queue::default();
-        let run = |queue: &Queue| {
-            let stop = || queue.stopped.load(Relaxed);
-            while !stop() {
-                let task = queue.next.fetch_add(1, Relaxed);
-                if task >= count {
-                    break;
-                }
+        let stop = || queue.stopped.load(Relaxed);
+        let next = || -> bool {
+            let task = if stop() { count } else { queue.next.fetch_add(1, Relaxed) };
+            if task < count {
                 work(task, &stop);
                 queue.done.fetch_add(1, Relaxed);
             }
+            task < count
         };
-        let threads = rayon::current_num_threads().min(count);
+        let helpers = threads().min(count).saturating_sub(1);
+        let report = &mut |done| report(progress, fraction(done));
         rayon::in_place_scope(|scope| {
-            for _ in 0..threads {
+            let help = || {
                 scope.spawn(|_| {
                     // Whatever becomes of the work, the calling thread must not wait for ever.
                     let _finished = Finished(&queue);
-                    run(&queue);
+                    while next() {}
                 });
+            };
+            (0..helpers).for_each(|_| help());
+            report(0).inspect_err(|_| queue.stopped.store(true, Relaxed))?;
+            // The calling thread begins at once, since to wake another one may take as long as all of the work. After a while another one
+            // takes its place.
+            let start = Instant::now();
+            while start.elapsed() < REPORT {
+                if !next() {
+                    return queue.watch(helpers, report);
+                }
             }
-            queue.watch(threads, &mut |done| report(progress, fraction(done)))
+            help();
+            queue.watch(helpers + 1, report)
         })
     }
     #[cfg(not(feature = "threads"))]
@@ -144,6 +165,10 @@ pub(crate) fn for_each_task(
         Ok(())
     }
 }
+
+/// Between two reports.
+#[cfg(feature = "threads")]
+const REPORT: Duration = Duration::from_millis(20);
 
 /// How far the tasks are.
 #[cfg(feature = "threads")]
@@ -172,7 +197,7 @@ impl Drop for Finished<'_> {
 impl Queue {
     /// Reports every 20 ms until all `threads` have finished.
     fn watch(&self, threads: usize, report: &mut dyn FnMut(usize) -> Result<(), Error>) -> Result<(), Error> {
-        let mut result = report(0);
+        let mut result = report(self.done.load(Relaxed));
         loop {
             self.stopped.fetch_or(result.is_err(), Relaxed);
             // Where the calling thread is itself one of the pool's, it must do the work that waits for it.
@@ -180,7 +205,7 @@ impl Queue {
             let finished = self.finished.lock().unwrap_or_else(PoisonError::into_inner);
             let (finished, _) = self
                 .changed
-                .wait_timeout_while(finished, Duration::from_millis(20), |finished| *finished < threads)
+                .wait_timeout_while(finished, REPORT, |finished| *finished < threads)
                 .unwrap_or_else(PoisonError::into_inner);
             if *finished == threads {
                 return result;

@@ -29,7 +29,7 @@ multiversion! {
     /// Evaluates what is left over a leaf at its points `x`, and writes the logits of each into its row.
     pub(super) fn evaluate(
         leaf: &Level,
-            heads: &Heads,
+        heads: &Heads,
         x: &[[Aligned; 3]],
         activations: &mut Activations,
         logits: &mut [&mut [f32]],
