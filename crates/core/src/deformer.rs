@@ -4,7 +4,7 @@ use crate::error::{check_points, Error};
 use crate::frame::Frame;
 use crate::mls::lanes::{BatchPoints, LaneHandles, Scratch, BATCH};
 use crate::mls::{check_turns, turned, Handles, Transform};
-use crate::parallel::{any, for_each_block, for_each_block_pair};
+use crate::parallel::{any, for_each_at_once};
 use crate::progress::{report, Progress};
 use crate::simd::prefetch;
 use crate::softmax::{check_temperature, relative_weights, PackedWeights};
@@ -213,14 +213,15 @@ impl Deformer {
             Motion { x: &self.x, logits: &self.logits, frame: self.frame, temperature, handles, lanes };
         let mut maps = maps.unwrap_or_default();
         for (chunk, y) in y.chunks_mut(CHUNK * D).enumerate() {
-            let first = CHUNK * chunk;
+            let (first, count) = (CHUNK * chunk, y.len() / D);
             report(progress, first as f64 / self.len() as f64)?;
+            let blocks = y.chunks_mut(BLOCK * D);
             if maps.is_empty() {
-                for_each_block(y, BLOCK * D, |block, y| motion.block(first + BLOCK * block, y, &mut []));
+                for_each_at_once(blocks, |block, y| motion.block(first + BLOCK * block, y, &mut []));
             } else {
-                let (now, later) = maps.split_at_mut(y.len() * D);
+                let (now, later) = maps.split_at_mut(count * D * D);
                 maps = later;
-                for_each_block_pair(y, BLOCK * D, now, BLOCK * D * D, |block, y, maps| {
+                for_each_at_once(blocks.zip(now.chunks_mut(BLOCK * D * D)), |block, (y, maps)| {
                     motion.block(first + BLOCK * block, y, maps);
                 });
             }

@@ -2,14 +2,13 @@
 
 use std::marker::PhantomData;
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
 #[cfg(feature = "threads")]
 use std::{
     sync::{
         atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed},
-        Condvar,
+        Condvar, Mutex, PoisonError,
     },
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use crate::error::Error;
@@ -50,7 +49,13 @@ pub(crate) fn for_each_block<T: Send>(
     size: usize,
     work: impl Fn(usize, &mut [T]) + Sync + Send,
 ) {
-    for_each_piece(out.chunks_mut(size), work);
+    // One block is done sooner than another thread has begun.
+    #[cfg(feature = "threads")]
+    if out.len() > size {
+        use rayon::prelude::*;
+        return out.par_chunks_mut(size).enumerate().for_each(|(index, block)| work(index, block));
+    }
+    out.chunks_mut(size).enumerate().for_each(|(index, block)| work(index, block));
 }
 
 /// The same for two slices that are cut in step: `size_a` elements of `a` belong to `size_b` of `b`.
@@ -61,27 +66,36 @@ pub(crate) fn for_each_block_pair<A: Send, B: Send>(
     size_b: usize,
     work: impl Fn(usize, &mut [A], &mut [B]) + Sync + Send,
 ) {
-    for_each_piece(a.chunks_mut(size_a).zip(b.chunks_mut(size_b)), |index, (a, b)| work(index, a, b));
+    #[cfg(feature = "threads")]
+    if a.len() > size_a {
+        use rayon::prelude::*;
+        return a
+            .par_chunks_mut(size_a)
+            .zip(b.par_chunks_mut(size_b))
+            .enumerate()
+            .for_each(|(index, (a, b))| work(index, a, b));
+    }
+    a.chunks_mut(size_a).zip(b.chunks_mut(size_b)).enumerate().for_each(|(index, (a, b))| work(index, a, b));
 }
 
-/// Calls `work(index, piece)` for each of the pieces.
-fn for_each_piece<P: Send>(
+/// Calls `work(index, piece)` for each of the pieces. The calling thread begins at once: to wake another one may take as long as short
+/// work. (Blocks of new memory are better shared as [`for_each_block`] does it, in which each thread has pages of its own.)
+pub(crate) fn for_each_at_once<P: Send>(
     pieces: impl ExactSizeIterator<Item = P> + Send,
     work: impl Fn(usize, P) + Sync + Send,
 ) {
-    // One is done sooner than another thread has begun.
     #[cfg(feature = "threads")]
-    if pieces.len() > 1 {
-        let helpers = threads().min(pieces.len()) - 1;
+    {
+        let helpers = threads().min(pieces.len()).saturating_sub(1);
         let pieces = Mutex::new(pieces.enumerate());
         let next = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next();
         let run = || std::iter::from_fn(next).for_each(|(index, piece)| work(index, piece));
-        // The calling thread begins at once: to wake another one may take as long as a frame.
-        return rayon::in_place_scope(|scope| {
+        rayon::in_place_scope(|scope| {
             (0..helpers).for_each(|_| scope.spawn(|_| run()));
             run();
         });
     }
+    #[cfg(not(feature = "threads"))]
     pieces.enumerate().for_each(|(index, piece)| work(index, piece));
 }
 
@@ -92,16 +106,12 @@ pub(crate) fn of_blocks<T: Sync, R: Send>(
     each: impl Fn(&[T]) -> R + Sync + Send,
     both: impl Fn(R, R) -> R + Sync + Send,
 ) -> Option<R> {
-    let all = Mutex::new(None);
-    for_each_piece(of.chunks(size), |_, block| {
-        let one = each(block);
-        let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
-        *all = Some(match all.take() {
-            Some(others) => both(others, one),
-            None => one,
-        });
-    });
-    all.into_inner().unwrap_or_else(PoisonError::into_inner)
+    #[cfg(feature = "threads")]
+    if of.len() > size {
+        use rayon::prelude::*;
+        return of.par_chunks(size).map(each).reduce_with(both);
+    }
+    of.chunks(size).map(each).reduce(both)
 }
 
 /// Whether `test` holds for one of the elements. (Sooner said of many together than of each in turn.)
@@ -123,37 +133,27 @@ pub(crate) fn for_each_task(
     #[cfg(feature = "threads")]
     {
         let queue = Queue::default();
-        let stop = || queue.stopped.load(Relaxed);
-        let next = || -> bool {
-            let task = if stop() { count } else { queue.next.fetch_add(1, Relaxed) };
-            if task < count {
+        let run = |queue: &Queue| {
+            let stop = || queue.stopped.load(Relaxed);
+            while !stop() {
+                let task = queue.next.fetch_add(1, Relaxed);
+                if task >= count {
+                    break;
+                }
                 work(task, &stop);
                 queue.done.fetch_add(1, Relaxed);
             }
-            task < count
         };
-        let helpers = threads().min(count).saturating_sub(1);
-        let report = &mut |done| report(progress, fraction(done));
+        let threads = rayon::current_num_threads().min(count);
         rayon::in_place_scope(|scope| {
-            let help = || {
+            for _ in 0..threads {
                 scope.spawn(|_| {
                     // Whatever becomes of the work, the calling thread must not wait for ever.
                     let _finished = Finished(&queue);
-                    while next() {}
+                    run(&queue);
                 });
-            };
-            (0..helpers).for_each(|_| help());
-            report(0).inspect_err(|_| queue.stopped.store(true, Relaxed))?;
-            // The calling thread begins at once, since to wake another one may take as long as all of the work. After a while another one
-            // takes its place.
-            let start = Instant::now();
-            while start.elapsed() < REPORT {
-                if !next() {
-                    return queue.watch(helpers, report);
-                }
             }
-            help();
-            queue.watch(helpers + 1, report)
+            queue.watch(threads, &mut |done| report(progress, fraction(done)))
         })
     }
     #[cfg(not(feature = "threads"))]
@@ -165,10 +165,6 @@ pub(crate) fn for_each_task(
         Ok(())
     }
 }
-
-/// Between two reports.
-#[cfg(feature = "threads")]
-const REPORT: Duration = Duration::from_millis(20);
 
 /// How far the tasks are.
 #[cfg(feature = "threads")]
@@ -197,7 +193,7 @@ impl Drop for Finished<'_> {
 impl Queue {
     /// Reports every 20 ms until all `threads` have finished.
     fn watch(&self, threads: usize, report: &mut dyn FnMut(usize) -> Result<(), Error>) -> Result<(), Error> {
-        let mut result = report(self.done.load(Relaxed));
+        let mut result = report(0);
         loop {
             self.stopped.fetch_or(result.is_err(), Relaxed);
             // Where the calling thread is itself one of the pool's, it must do the work that waits for it.
@@ -205,7 +201,7 @@ impl Queue {
             let finished = self.finished.lock().unwrap_or_else(PoisonError::into_inner);
             let (finished, _) = self
                 .changed
-                .wait_timeout_while(finished, REPORT, |finished| *finished < threads)
+                .wait_timeout_while(finished, Duration::from_millis(20), |finished| *finished < threads)
                 .unwrap_or_else(PoisonError::into_inner);
             if *finished == threads {
                 return result;
