@@ -290,3 +290,32 @@ fn below(node: Node, mut each: impl FnMut(Node)) {
     let levels = node.count.next_power_of_two().ilog2();
     walk(node, if levels <= STEP + 1 { levels } else { STEP }, &mut each);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Frame;
+
+    #[test]
+    fn groups_have_every_node_once_in_order_and_about_their_share_each() {
+        let tree = PointTree::new(&[0.5; 3], 3, Frame::IDENTITY, &mut |_| true).unwrap();
+        let node = tree.root();
+        let sizes: [fn(usize) -> usize; 4] =
+            [|_| 1000, |i| 1 + 999 * (i % 7), |i| if i == 3 { 8 << 20 } else { 10 }, |_| 4 << 20];
+        for count in [0, 1, 2, 7, 32, 100] {
+            for size in sizes {
+                let tops: Vec<Top> = (0..count).map(|i| Top { node, above: None, bytes: size(i) }).collect();
+                let groups = groups(&tops);
+                let together: Vec<*const Top> =
+                    groups.iter().flat_map(|group| group.iter()).map(std::ptr::from_ref).collect();
+                assert_eq!(together, tops.iter().map(std::ptr::from_ref).collect::<Vec<_>>());
+                let bytes = |tops: &[Top]| tops.iter().map(|top| top.bytes as u64).sum::<u64>();
+                let largest = tops.iter().map(|top| top.bytes as u64).max().unwrap_or(0);
+                for group in &groups {
+                    assert!(!group.is_empty() && bytes(group) <= MOST_GROUP + largest, "{}", bytes(group));
+                }
+                assert!(count < 2 * GROUP || groups.len() >= 2, "{} of {count}", groups.len());
+            }
+        }
+    }
+}
