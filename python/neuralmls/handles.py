@@ -11,10 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 from neuralmls import _core
 from neuralmls.arrays import as_number, as_points
 from neuralmls.errors import ArgumentError
-from neuralmls.protocol import Transform, Weights
-from neuralmls.turns import Rotations, Scales, as_turns
+from neuralmls.orientations import Rotations, Scales, as_orientations
+from neuralmls.weights import Weights
 
 Array: TypeAlias = NDArray[np.float64]
+# What may happen to a shape locally.
+Transform: TypeAlias = Literal["rigid", "similarity", "affine"]
 
 
 @dataclass(frozen=True)
@@ -100,13 +102,13 @@ class ExactHandles:
             )
         self._p = as_points("weights.control_points", weights.control_points)
         logits = np.ascontiguousarray(weights.logits(self._p), np.float32)
-        self._core = _core.ExactHandles(self._p, logits, transform)
+        self._core = _core.Handles(self._p, logits, transform)
 
     def aim(
         self,
         targets: ArrayLike,
         temperature: float = 1.0,
-        adherence: float = 1.0,
+        adherence: ArrayLike = 1.0,
         *,
         rotations: Rotations = None,
         scales: Scales = None,
@@ -122,8 +124,9 @@ class ExactHandles:
             Where the control points are to go.
         temperature : float > 0
             Of the softmax, as in `Deformer.deform`.
-        adherence : float, 0 to 1
-            1: all the way; 0: where plain moving least squares takes them; between: that part of the way between.
+        adherence : float, 0 to 1, or (m,)
+            1: all the way; 0: where plain moving least squares takes them; between: that part of the way between. One
+            for all, or one for each control point.
         rotations : (m, d, d), scales : (m,), optional
             As in `Deformer.deform`, to which they are to be handed too.
 
@@ -132,14 +135,15 @@ class ExactHandles:
         ArgumentError
             The targets are not as many finite points as there are control points; a number is out of its range.
         """
-        aimed, misses, _ = self._core.aim(*self._checked(targets, temperature, rotations, scales), adherence)
+        checked = self._checked(targets, temperature, rotations, scales)
+        aimed, misses, _ = self._core.aim(*checked, as_adherence(adherence, len(self._p)), False)
         return Aim(aimed, misses)
 
     def aim_carefully(
         self,
         targets: ArrayLike,
         temperature: float = 1.0,
-        adherence: float = 1.0,
+        adherence: ArrayLike = 1.0,
         *,
         rotations: Rotations = None,
         scales: Scales = None,
@@ -162,16 +166,15 @@ class ExactHandles:
         ArgumentError
             As `aim`.
         """
-        aimed, misses, soft = self._core.aim_carefully(
-            *self._checked(targets, temperature, rotations, scales), adherence
-        )
+        checked = self._checked(targets, temperature, rotations, scales)
+        aimed, misses, soft = self._core.aim(*checked, as_adherence(adherence, len(self._p)), True)
         return Aim(aimed, misses, None if soft is None else Soft(*soft))  # type: ignore[arg-type]
 
     def remedy(
         self,
         targets: ArrayLike,
         temperature: float = 1.0,
-        adherence: float = 1.0,
+        adherence: ArrayLike = 1.0,
         *,
         rotations: Rotations = None,
         scales: Scales = None,
@@ -190,7 +193,8 @@ class ExactHandles:
         ArgumentError
             As `aim`.
         """
-        found = self._core.remedy(*self._checked(targets, temperature, rotations, scales), adherence)
+        checked = self._checked(targets, temperature, rotations, scales)
+        found = self._core.remedy(*checked, as_adherence(adherence, len(self._p)))
         if found is None:
             return None
         return "with the affine transform" if found[1] is None else f"at temperature {found[1]:g}"
@@ -201,4 +205,20 @@ class ExactHandles:
         q = as_points("targets", targets, self._p.shape[1])
         if len(q) != len(self._p):
             raise ArgumentError(f"targets: expected {len(self._p)} of them, found {len(q)}")
-        return q, as_turns(rotations, scales, *q.shape), as_number("temperature", temperature, 0)
+        return q, as_orientations(rotations, scales, *q.shape), as_number("temperature", temperature, 0)
+
+
+def as_adherence(value: ArrayLike, count: int) -> list[float]:
+    """Return one number for all control points, or one for each.
+
+    Raises
+    ------
+    ArgumentError
+        It is none from 0 to 1, or there are not so many.
+    """
+    if np.ndim(value) == 0:
+        return [as_number("adherence", value, 0, 1, open_low=False)]  # type: ignore[arg-type]
+    listed = [as_number("adherence", one, 0, 1, open_low=False) for one in np.ravel(value)]
+    if len(listed) != count:
+        raise ArgumentError(f"adherence: expected one number, or {count} of them, found {len(listed)}")
+    return listed
