@@ -14,7 +14,7 @@ from neuralmls.errors import ArgumentError
 from neuralmls.handles import ExactHandles, Transform
 from neuralmls.orientations import Rotations, Scales, as_orientations
 from neuralmls.point_tree import PointTree
-from neuralmls.weights import Weights
+from neuralmls.weights import HasLogits, Weights
 
 Floats: TypeAlias = NDArray[np.floating]
 
@@ -58,7 +58,7 @@ class Deformer:
     def __init__(
         self,
         x: ArrayLike,
-        weights: Weights,
+        weights: Weights | HasLogits,
         *,
         transform: Transform = "rigid",
         progress: Progress | None = None,

@@ -12,7 +12,7 @@ from neuralmls import _core
 from neuralmls.arrays import as_number, as_points
 from neuralmls.errors import ArgumentError
 from neuralmls.orientations import Rotations, Scales, as_orientations
-from neuralmls.weights import Weights
+from neuralmls.weights import HasLogits, Weights
 
 Array: TypeAlias = NDArray[np.float64]
 # What may happen to a shape locally.
@@ -95,7 +95,7 @@ class ExactHandles:
     True
     """
 
-    def __init__(self, weights: Weights, *, transform: Transform = "rigid") -> None:
+    def __init__(self, weights: Weights | HasLogits, *, transform: Transform = "rigid") -> None:
         if not hasattr(weights, "control_points"):
             raise ArgumentError(
                 f"weights: expected a weight function, with control_points and logits, found {weights!r}"

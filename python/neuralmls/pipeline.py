@@ -7,12 +7,12 @@ from numpy.typing import ArrayLike
 
 from neuralmls.advice import fitted
 from neuralmls.arrays import as_points, box_around
-from neuralmls.deformer import Floats
+from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ArgumentError
-from neuralmls.handles import Transform
+from neuralmls.handles import ExactHandles, Transform
 from neuralmls.orientations import Rotations, Scales
 from neuralmls.session import Handles, WeightsName
-from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
+from neuralmls.weights import HasLogits, InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
 
 
 def deform(
@@ -22,7 +22,7 @@ def deform(
     *,
     rotations: Rotations = None,
     scales: Scales = None,
-    weights: WeightsName | Weights = "neural",
+    weights: WeightsName | Weights | HasLogits = "neural",
     faces: ArrayLike | None = None,
     transform: Transform = "rigid",
     temperature: float = 1.0,
@@ -78,28 +78,36 @@ def deform(
         )
     points = as_points("x", x, sources.shape[1])
     box = box_around(points) if len(points) and (points != points[0]).any() else None
-    function: Weights
+    function: Weights | HasLogits
     if isinstance(weights, str) and weights == "neural":
         function = NeuralWeights.fit(sources, bounds=box, seed=seed)
     elif isinstance(weights, str) and weights == "shape-aware":
         function = ShapeAwareWeights.fit(sources, points, faces, seed=seed)
     elif isinstance(weights, str) and weights == "inverse-distance":
         function = InverseDistanceWeights(sources, bounds=box)
-    elif isinstance(weights, Weights):
-        function = weights
-        if not np.array_equal(function.control_points, sources):
-            raise ArgumentError("weights: expected a weight function of the control points p, found one of others")
-    else:
+    elif isinstance(weights, str) or not hasattr(weights, "control_points"):
         raise ArgumentError(
             f"weights: expected 'neural', 'shape-aware', 'inverse-distance' or a weight function, found {weights!r}"
         )
-    map = fitted(
-        function,
-        targets,
-        transform=transform,
-        temperature=temperature,
-        handles=handles,
-        rotations=rotations,
-        scales=scales,
-    )
-    return map.at(x)
+    else:
+        function = weights
+        if not np.array_equal(as_points("weights.control_points", function.control_points), sources):
+            raise ArgumentError("weights: expected a weight function of the control points p, found one of others")
+    if isinstance(function, Weights):
+        map = fitted(
+            function,
+            targets,
+            transform=transform,
+            temperature=temperature,
+            handles=handles,
+            rotations=rotations,
+            scales=scales,
+        )
+        return map.at(x)
+    # Logits of someone's own: the same steps, of which a map would keep the weights.
+    solver = ExactHandles(function, transform=transform)
+    share = {"auto": 1.0, "exact": 1.0, "soft": 0.0}.get(handles, handles) if isinstance(handles, str) else handles
+    solve = solver.aim if handles == "exact" else solver.aim_carefully
+    aim = solve(targets, temperature, share, rotations=rotations, scales=scales)
+    deformer = Deformer(x, function, transform=transform)
+    return deformer.deform(aim.targets, temperature, rotations=rotations, scales=scales)

@@ -3,8 +3,11 @@
 
 use neuralmls_core::{Better, Kind, Look, Pose, Probe};
 
+use serde_json::{json, Value};
+
 use crate::report::ARRIVED;
-use crate::words::{general, listed, percent, place};
+use crate::text::{general, quoted};
+use crate::words::{listed, percent, place};
 use crate::{Error, HandlesSetting, Map};
 
 /// A soft handle may stop short by this part of the longest move (study: up to 0.075) ...
@@ -79,9 +82,9 @@ impl Map {
                             .unwrap_or("move the control points there less far towards or past each other".into()),
                     };
                     let sentence = format!(
-                        "{} of the shape is folded over, most of all near '{}', at {}; {help}",
+                        "{} of the shape is folded over, most of all near {}, at {}; {help}",
                         percent(part),
-                        points[first].name,
+                        quoted(&points[first].name),
                         place(&at)
                     );
                     ("folds", part, sentence, vec![first])
@@ -94,9 +97,9 @@ impl Map {
                             .unwrap_or("move them less far apart, or put control points between them".into()),
                     };
                     let sentence = format!(
-                        "the shape is torn between '{}' and '{}', stretched up to {stretch:.0} times at {}; {help}",
-                        points[first].name,
-                        points[second].name,
+                        "the shape is torn between {} and {}, stretched up to {stretch:.0} times at {}; {help}",
+                        quoted(&points[first].name),
+                        quoted(&points[second].name),
                         place(&at)
                     );
                     ("torn", stretch, sentence, vec![first, second])
@@ -104,10 +107,10 @@ impl Map {
                 Kind::Ungoverned(spacings) => {
                     let away = distance(&at, &points[first].position);
                     let sentence = format!(
-                        "no control point governs the part around {}, which moves all the same: the nearest, '{}', is {} away, {spacings:.1} \
+                        "no control point governs the part around {}, which moves all the same: the nearest, {}, is {} away, {spacings:.1} \
                          times as far as they are from each other; put a control point there",
                         place(&at),
-                        points[first].name,
+                        quoted(&points[first].name),
                         general(away, 3)
                     );
                     ("ungoverned", away, sentence, vec![first])
@@ -141,7 +144,7 @@ impl Map {
             return Ok(None);
         };
         let named: Vec<String> =
-            short.iter().map(|&i| format!("'{}' by {}", points[i].name, general(away[i], 3))).collect();
+            short.iter().map(|&i| format!("{} by {}", quoted(&points[i].name), general(away[i], 3))).collect();
         Ok(Some(Advice {
             kind: "misses",
             sentence: format!(
@@ -201,4 +204,10 @@ fn better_in_words((better, part): (Better, f64)) -> String {
 
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Advice for a face that takes JSON: a list of kind, sentence, the control points' numbers, and how bad.
+pub fn to_json(advice: &[Advice]) -> String {
+    let told = |one: &Advice| json!({"kind": one.kind, "sentence": one.sentence, "control_points": one.control_points, "amount": one.amount});
+    Value::Array(advice.iter().map(told).collect()).to_string()
 }

@@ -6,7 +6,7 @@ use std::ops::Deref;
 use crate::error::Error;
 use crate::orientation::Orientation;
 use crate::text::{float, general, number, quoted, shown, tuple};
-use crate::{Map, Value};
+use serde_json::{Map, Value};
 
 mod check;
 mod fit;

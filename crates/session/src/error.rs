@@ -45,6 +45,17 @@ impl Error {
     }
 }
 
+impl From<neuralmls_core::Error> for Error {
+    fn from(error: neuralmls_core::Error) -> Self {
+        let kind = match error {
+            neuralmls_core::Error::Argument { .. } => ErrorKind::Argument,
+            neuralmls_core::Error::Memory => ErrorKind::Memory,
+            neuralmls_core::Error::Cancelled => ErrorKind::Cancelled,
+        };
+        Error { kind, message: error.to_string() }
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use neuralmls_core::{
-    progress::Progress, Aim, Deformed, Deformer, Frame, Handles, InverseDistance, PointTree, Pose, Schedule, Training,
+    progress::Progress, Aim, Deformed, Deformer, Frame, Handles, InverseDistance, PointTree, Pose, Schedule, Trained, Training,
     Transform, Weights,
 };
 
@@ -134,6 +134,14 @@ impl Map {
     /// The weights.
     pub fn weights(&self) -> &Weights {
         &self.weights
+    }
+
+    /// What the training of a network left, where the weights are one.
+    pub fn trained(&self) -> Option<&Trained> {
+        match &*self.weights {
+            Weights::Neural(trained) | Weights::ShapeAware(trained) => Some(trained),
+            Weights::InverseDistance(_) => None,
+        }
     }
 
     /// The weights, shared.

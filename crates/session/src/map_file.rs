@@ -136,7 +136,7 @@ fn parse(bytes: &[u8]) -> Result<(Weights, Option<String>), Error> {
     }
     if said("version") != Some(VERSION) {
         let found = said("version").unwrap_or("none");
-        return Err(broken(&format!("version: expected {VERSION}, found {}", crate::shown(found))));
+        return Err(broken(&format!("version: expected {VERSION}, found {}", crate::text::shown(found))));
     }
     let shape = arrays.shape("control_points", 2)?;
     let (m, dim) = (shape[0], shape[1]);

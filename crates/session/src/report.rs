@@ -2,7 +2,10 @@
 
 use neuralmls_core::{softmax, Aim, Pose, Remedy, Soft, Weights};
 
-use crate::words::{general, listed};
+use serde_json::json;
+
+use crate::text::{general, quoted};
+use crate::words::listed;
 use crate::{Error, HandlesSetting, Map, WeightsSettings};
 
 /// A control point with less of the weight at its own place shares it; the training aims at 0.9.
@@ -47,6 +50,23 @@ pub struct Report {
     pub soft: Option<String>,
     /// What a person should know, a sentence each.
     pub warnings: Vec<String>,
+    /// Where the control points land, m x d.
+    pub places: Vec<f64>,
+}
+
+impl Report {
+    /// For a face that takes JSON.
+    pub fn to_json(&self) -> String {
+        let distances: Vec<f64> = self.control_points.iter().map(|point| point.distance_to_target).collect();
+        json!({
+            "places": self.places,
+            "distances": distances,
+            "handles": self.handles,
+            "soft": self.soft,
+            "warnings": self.warnings,
+        })
+        .to_string()
+    }
 }
 
 /// What a file can hold: its numbers are rounded as it writes them.
@@ -102,7 +122,7 @@ impl Map {
         let longest = control_points.iter().map(|point| point.moved).fold(0.0, f64::max);
         warnings.extend(held.and_then(|held| not_held(held, longest)));
         let handles = self.in_words(soft.is_some(), self.any_short(aim));
-        Ok(Report { control_points, handles, soft, warnings })
+        Ok(Report { control_points, handles, soft, warnings, places: arrived })
     }
 
     /// Whether one stays short of where it was to go.
@@ -140,8 +160,8 @@ impl Map {
         let Some(Soft::Shared(control_point, owned)) = aim.soft else {
             return None;
         };
-        let name = &self.session().points[control_point].name;
-        let mut said = format!("'{name}' has only {} of the weight at its own place", general(owned, 2));
+        let name = quoted(&self.session().points[control_point].name);
+        let mut said = format!("{name} has only {} of the weight at its own place", general(owned, 2));
         if let Some(remedy) = remedy {
             said += &format!("; {remedy} they arrive");
         }
@@ -171,7 +191,7 @@ impl Map {
             return Ok(None);
         }
         shared.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let names: Vec<String> = shared.iter().map(|(_, i)| format!("'{}'", points[*i].name)).collect();
+        let names: Vec<String> = shared.iter().map(|(_, i)| quoted(&points[*i].name)).collect();
         Ok(Some(format!(
             "after {} steps of training, control points still share their places with others, and stop short of their targets: {}; \
              they are probably too close together",
@@ -190,7 +210,7 @@ impl Map {
         short.sort_by(|&a, &b| aim.misses[b].total_cmp(&aim.misses[a]));
         let named: Vec<String> = short
             .iter()
-            .map(|&i| format!("'{}' by {}", self.session().points[i].name, general(aim.misses[i], 3)))
+            .map(|&i| format!("{} by {}", quoted(&self.session().points[i].name), general(aim.misses[i], 3)))
             .collect();
         let way_out = match remedy {
             Some(remedy) => format!("{remedy} they arrive"),
@@ -216,19 +236,23 @@ fn not_held(held: &Held<'_>, longest: f64) -> Option<String> {
     })
 }
 
-/// The angle in degrees between the rotation in a map (dim x dim) and a rotation (3 x 3), both row-major.
+/// The angle in degrees between the rotation nearest to a map (dim x dim) and a rotation (3 x 3), both row-major.
 fn angle(map: &[f64], rotation: &[f64; 9], dim: usize) -> f64 {
-    if dim == 1 {
-        return 0.0;
+    match dim {
+        1 => 0.0,
+        2 => angle_in::<2>(map, rotation, |trace| trace / 2.0),
+        _ => angle_in::<3>(map, rotation, |trace| (trace - 1.0) / 2.0),
     }
-    // The rotation nearest to `map rotation^T` turns by the angle that is missing.
-    let mut product = [[0.0; 3]; 3];
-    for (r, row) in product.iter_mut().enumerate().take(dim) {
-        for (c, entry) in row.iter_mut().enumerate().take(dim) {
-            *entry = (0..dim).map(|k| map[dim * r + k] * rotation[3 * c + k]).sum();
-        }
-    }
-    neuralmls_core::mls::angle_of(&product, dim).to_degrees()
+}
+
+fn angle_in<const D: usize>(map: &[f64], rotation: &[f64; 9], cosine: impl Fn(f64) -> f64) -> f64 {
+    // The best rotation maximises tr(R C): C is the transpose of what is to be turned back, `map rotation^T`.
+    let c = std::array::from_fn(|r| {
+        std::array::from_fn(|c| (0..D).map(|k| map[D * c + k] * rotation[3 * r + k]).sum())
+    });
+    let missing = neuralmls_core::mls::best_rotation::<D>(&c);
+    let trace: f64 = (0..D).map(|k| missing[k][k]).sum();
+    cosine(trace).clamp(-1.0, 1.0).acos().to_degrees()
 }
 
 fn distance(a: &[f64], b: &[f64]) -> f64 {

@@ -1,9 +1,12 @@
 //! What a person sets: control points, settings, frame.
 
 use crate::control_points::ControlPoints;
+use neuralmls_core::Frame;
+
 use crate::error::Error;
 use crate::settings::Settings;
-use crate::{files, Map, Value};
+use crate::files;
+use serde_json::{Map, Value};
 
 /// The frame of a session: the box in which its weights are trained.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +37,29 @@ impl Box {
             return Err(Error::argument(message));
         }
         Ok(Box { min, max })
+    }
+
+    /// The box around points of `dim` coordinates, n x dim.
+    ///
+    /// # Errors
+    /// An argument, where there are none, or all are in one place.
+    pub fn around(points: &[f64], dim: usize) -> Result<Self, Error> {
+        let (mut min, mut max) = (vec![f64::INFINITY; dim], vec![f64::NEG_INFINITY; dim]);
+        for point in points.chunks_exact(dim) {
+            for (k, c) in point.iter().enumerate() {
+                (min[k], max[k]) = (min[k].min(*c), max[k].max(*c));
+            }
+        }
+        Box::new(min, max, dim)
+    }
+
+    /// The same as the core has it.
+    ///
+    /// # Errors
+    /// An argument, where it is of another dimension, or has no size that a number could hold.
+    pub fn frame(&self, dim: usize) -> Result<Frame, Error> {
+        let checked = Box::new(self.min.clone(), self.max.clone(), dim)?;
+        Ok(Frame::of_box(&checked.min, &checked.max)?)
     }
 }
 

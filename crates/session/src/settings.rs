@@ -103,6 +103,30 @@ impl Default for Settings {
     }
 }
 
+impl HandlesSetting {
+    /// As a sentence has it.
+    pub fn name(&self) -> String {
+        match self {
+            HandlesSetting::Auto => "auto".into(),
+            HandlesSetting::Exact => "exact".into(),
+            HandlesSetting::Soft => "soft".into(),
+            HandlesSetting::Part(part) => number(*part),
+        }
+    }
+}
+
+/// A transform by its name.
+///
+/// # Errors
+/// An argument, where there is none of that name.
+pub fn transform(name: &str) -> Result<Transform, Error> {
+    let found = TRANSFORMS.iter().find(|(known, _)| *known == name);
+    found.map(|(_, transform)| *transform).ok_or_else(|| {
+        let found = crate::text::quoted(name);
+        Error::argument(format!("transform: expected 'rigid', 'similarity' or 'affine', found {found}"))
+    })
+}
+
 impl Settings {
     /// Refuses what is out of its range, by name.
     ///

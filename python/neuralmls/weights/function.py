@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Self
+from typing import Any, Protocol, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +13,17 @@ from neuralmls.arrays import Progress, as_points
 from neuralmls.errors import ArgumentError, FileError
 from neuralmls.files import as_path, read_bytes, write_atomically
 from neuralmls.point_tree import PointTree
+
+
+class HasLogits(Protocol):
+    """Anything that `Deformer` and `ExactHandles` take for a weight function besides `Weights`."""
+
+    @property
+    def control_points(self) -> NDArray[np.float64]:
+        """The control points at rest, (m, d)."""
+
+    def logits(self, x: ArrayLike, *, progress: Progress | None = None) -> NDArray[np.float32]:
+        """What it says of each of the points `x` (n, d), before the softmax: (n, m)."""
 
 
 class Weights:

@@ -27,7 +27,7 @@ def weights(request):
 @st.composite
 def rotations(draw):
     axis = draw(st.tuples(*[st.floats(-1, 1, width=16)] * 3).filter(any))
-    return nm.Turn(axis, draw(st.floats(-180, 180))).matrix
+    return nm.Orientation(axis, draw(st.floats(-180, 180))).matrix
 
 
 def some(rotation, which):
@@ -88,7 +88,7 @@ def test_two_control_points_twist_a_bar():
     around = np.linspace(0, 2 * np.pi, 12, endpoint=False)
     bar = np.array([[0.1 * np.cos(a), 0.1 * np.sin(a), h] for h in np.linspace(0, 1, 41) for a in around])
     ends = [[0, 0, 0], [0, 0, 1]]
-    turns = [nm.Turn((0, 0, 1), -50).matrix, nm.Turn((0, 0, 1), 50).matrix]
+    turns = [nm.Orientation((0, 0, 1), -50).matrix, nm.Orientation((0, 0, 1), 50).matrix]
     for transform in ("rigid", "similarity"):
         y = nm.deform(bar, ends, ends, rotations=turns, transform=transform)
         assert np.abs(np.hypot(y[:, 0], y[:, 1]) - 0.1).max() < 1e-6  # as thick as it was
@@ -101,7 +101,7 @@ def test_two_control_points_twist_a_bar():
 def test_exact_handles_arrive_turned(weights):
     p = weights.control_points
     q = p + 0.1 * np.cos(np.arange(18.0)).reshape(6, 3)
-    turns = some(nm.Turn((1, 2, 3), 40).matrix, [True, False, False, True, False, False])
+    turns = some(nm.Orientation((1, 2, 3), 40).matrix, [True, False, False, True, False, False])
     at_handles = nm.Deformer(p, weights)
     soft, exact = (at_handles.deform(q, rotations=turns, adherence=adherence) for adherence in (0, 1))
     if isinstance(weights, nm.NeuralWeights):  # classic handles always arrive
@@ -112,7 +112,7 @@ def test_exact_handles_arrive_turned(weights):
 def test_the_order_of_the_control_points_does_not_matter():
     rng = np.random.default_rng(2)
     p, q = rng.uniform(-1, 1, (2, 6, 3))
-    turns = [nm.Turn(tuple(axis), 50).matrix if i % 2 else None for i, axis in enumerate(rng.normal(size=(6, 3)))]
+    turns = [nm.Orientation(tuple(axis), 50).matrix if i % 2 else None for i, axis in enumerate(rng.normal(size=(6, 3)))]
     order = rng.permutation(6)
     for transform in TRANSFORMS:
         here = nm.deform(X, p, q, rotations=turns, transform=transform)
@@ -121,14 +121,14 @@ def test_the_order_of_the_control_points_does_not_matter():
 
 
 def test_in_the_plane_and_on_a_line():
-    corner = nm.deform([[1.0, 0.0]], [[0.0, 0.0]], [[0.0, 0.0]], rotations=[nm.Turn(degrees=90).matrix])
+    corner = nm.deform([[1.0, 0.0]], [[0.0, 0.0]], [[0.0, 0.0]], rotations=[nm.Orientation(degrees=90).matrix])
     assert np.abs(corner - [[0, 1]]).max() < 1e-8
     line = nm.deform([[3.0]], [[1.0]], [[1.0]], scales=[2.0], transform="similarity")
     assert np.abs(line - [[5]]).max() < 1e-8
 
 
 def test_maps_turn_with_a_turned_control_point(weights):
-    turn, p = nm.Turn((0, 0, 1), 60).matrix, weights.control_points
+    turn, p = nm.Orientation((0, 0, 1), 60).matrix, weights.control_points
     _, maps = nm.Deformer(p, weights).deform(p, rotations=[turn, *[None] * 5], return_maps=True)
     assert np.degrees(np.arccos((np.trace(maps[0] @ turn.T) - 1) / 2)) < 10
     assert np.abs(maps @ maps.transpose(0, 2, 1) - np.eye(3)).max() < 1e-9
@@ -155,8 +155,8 @@ def test_what_is_no_turn_is_refused_in_one_sentence(weights, given, words):
 
 def test_advice_knows_of_turns(weights):
     p = weights.control_points
-    quarter = nm.Turn((0, 0, 1), 90).matrix
+    quarter = nm.Orientation((0, 0, 1), 90).matrix
     assert nm.advise(X, None, weights, p @ quarter.T, rotations=[quarter] * 6) == []
-    wild = some(nm.Turn((1, 0, 0), 170).matrix, [True, False] * 3)
+    wild = some(nm.Orientation((1, 0, 0), 170).matrix, [True, False] * 3)
     assert nm.advise(X, None, weights, p) == []
     assert nm.advise(X, None, weights, p, rotations=wild) != []
