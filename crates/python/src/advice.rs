@@ -1,6 +1,6 @@
 //! What is likely bad about a deformation.
 
-use neuralmls_core::advice::{Better, Kind};
+use neuralmls_core::{Better, Kind};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -10,7 +10,7 @@ use crate::errors::from_core;
 /// Places on a shape, bound to the weights of control points.
 #[pyclass(frozen)]
 pub(crate) struct Probe {
-    probe: neuralmls_core::advice::Probe,
+    probe: neuralmls_core::Probe,
     dim: usize,
 }
 
@@ -26,7 +26,7 @@ impl Probe {
     #[staticmethod]
     fn points<'py>(places: PyReadonlyArray2<'py, f64>, side: f64) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let dim = places.shape()[1];
-        let points = neuralmls_core::advice::Probe::points(places.as_slice()?, dim, side);
+        let points = neuralmls_core::Probe::points(places.as_slice()?, dim, side);
         let count = points.len() / dim;
         PyArray1::from_vec(places.py(), points).reshape([count, dim])
     }
@@ -42,7 +42,7 @@ impl Probe {
         careful: bool,
     ) -> PyResult<Probe> {
         let dim = p.shape()[1];
-        neuralmls_core::advice::Probe::new(
+        neuralmls_core::Probe::of_logits(
             p.as_slice()?,
             dim,
             places.as_slice()?,
@@ -50,8 +50,9 @@ impl Probe {
             logits.as_slice()?.to_vec(),
             own_logits.as_slice()?.to_vec(),
             self::transform(transform)?,
+            careful,
         )
-        .map(|probe| Probe { probe: probe.careful(careful), dim })
+        .map(|probe| Probe { probe, dim })
         .map_err(|error| from_core(error, None))
     }
 
@@ -64,8 +65,8 @@ impl Probe {
         adherence: f64,
     ) -> PyResult<Vec<Advice>> {
         let pose = pose(&q, turns.as_ref())?;
-        let found = py.detach(|| self.probe.advise(pose, temperature, adherence));
-        let named = |advice: neuralmls_core::advice::Advice| {
+        let found = py.detach(|| self.probe.advise(pose, temperature, &[adherence]));
+        let named = |advice: neuralmls_core::Advice| {
             let (kind, amount) = match advice.kind {
                 Kind::Folds(part) => ("folds", part),
                 Kind::Torn(stretch) => ("torn", stretch),
@@ -90,7 +91,8 @@ impl Probe {
         adherence: f64,
     ) -> PyResult<(f64, f64)> {
         let pose = pose(&q, turns.as_ref())?;
-        py.detach(|| self.probe.parts(pose, temperature, adherence)).map_err(|error| from_core(error, None))
+        py.detach(|| self.probe.parts(pose, temperature, &[adherence]))
+            .map_err(|error| from_core(error, None))
     }
 
     fn look<'py>(
@@ -102,7 +104,7 @@ impl Probe {
         adherence: f64,
     ) -> PyResult<Look<'py>> {
         let pose = pose(&q, turns.as_ref())?;
-        let look = py.detach(|| self.probe.look(pose, temperature, adherence));
+        let look = py.detach(|| self.probe.look(pose, temperature, &[adherence]));
         let look = look.map_err(|error| from_core(error, None))?;
         let count = look.determinants.len();
         Ok((

@@ -25,7 +25,7 @@ pub(crate) fn pose<'a>(
     turns: Option<&'a PyReadonlyArray3<'_, f64>>,
 ) -> PyResult<Pose<'a>> {
     let turns = turns.map(|turns| turns.as_slice()).transpose()?;
-    Ok(Pose { q: q.as_slice()?, turns })
+    Ok(Pose { q: q.as_slice()?, orientations: turns })
 }
 
 /// A transform by its name.
@@ -54,7 +54,7 @@ impl Deformer {
         let transform = self::transform(transform)?;
         let (x, p, logits) = (x.as_slice()?, p.as_slice()?, logits.as_slice()?);
         let (x, logits) = (copy_of(x), copy_of(logits));
-        let inner = neuralmls_core::Deformer::new(x, dim, p, logits, transform)
+        let inner = neuralmls_core::Deformer::of_logits(x, dim, p, logits, transform)
             .map_err(|error| from_core(error, None))?;
         Ok(Deformer { inner, dim })
     }
@@ -79,7 +79,7 @@ impl Deformer {
                 Some(tree) => network.0.logits_of_tree(&tree.0, report)?,
                 None => network.0.logits(x, report)?,
             };
-            neuralmls_core::Deformer::new(copy_of(x), dim, p, logits, transform)
+            neuralmls_core::Deformer::of_logits(copy_of(x), dim, p, logits, transform)
         })?;
         Ok(Deformer { inner, dim })
     }

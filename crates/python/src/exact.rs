@@ -9,7 +9,7 @@ use crate::errors::from_core;
 
 /// Solves for effective targets.
 #[pyclass(frozen)]
-pub(crate) struct ExactHandles(neuralmls_core::ExactHandles);
+pub(crate) struct ExactHandles(neuralmls_core::Handles);
 
 /// Effective targets m x d, how far each control point stays from where it was to go, and why they do not arrive: a reason, which
 /// control point, how much.
@@ -24,9 +24,14 @@ impl ExactHandles {
         transform: &str,
     ) -> PyResult<ExactHandles> {
         let transform = self::transform(transform)?;
-        neuralmls_core::ExactHandles::new(p.as_slice()?, p.shape()[1], logits.as_slice()?.to_vec(), transform)
-            .map(ExactHandles)
-            .map_err(|error| from_core(error, None))
+        neuralmls_core::Handles::of_logits(
+            p.as_slice()?,
+            p.shape()[1],
+            logits.as_slice()?.to_vec(),
+            transform,
+        )
+        .map(ExactHandles)
+        .map_err(|error| from_core(error, None))
     }
 
     fn aim<'py>(
@@ -37,7 +42,7 @@ impl ExactHandles {
         temperature: f64,
         adherence: f64,
     ) -> PyResult<Aim<'py>> {
-        given(py, q, turns, |pose| self.0.aim(pose, temperature, adherence))
+        given(py, q, turns, |pose| self.0.aim(pose, temperature, &[adherence]))
     }
 
     fn aim_carefully<'py>(
@@ -48,7 +53,7 @@ impl ExactHandles {
         temperature: f64,
         adherence: f64,
     ) -> PyResult<Aim<'py>> {
-        given(py, q, turns, |pose| self.0.aim_carefully(pose, temperature, adherence))
+        given(py, q, turns, |pose| self.0.aim_carefully(pose, temperature, &[adherence]))
     }
 
     /// A temperature, or none for the affine transform; none at all where neither helps.
@@ -62,7 +67,7 @@ impl ExactHandles {
     ) -> PyResult<Option<(&'static str, Option<f64>)>> {
         let pose = pose(&q, turns.as_ref())?;
         let remedy = py
-            .detach(|| self.0.remedy(pose, temperature, adherence))
+            .detach(|| self.0.remedy(pose, temperature, &[adherence]))
             .map_err(|error| from_core(error, None))?;
         Ok(remedy.map(|remedy| match remedy {
             Remedy::Temperature(other) => ("temperature", Some(other)),

@@ -1,6 +1,6 @@
 //! Weight functions.
 
-use neuralmls_core::{Error, Fit, Frame, InverseDistance, Layer, Samples, Schedule, Training};
+use neuralmls_core::{Error, Frame, InverseDistance, Layer, Samples, Schedule, Training, Weights};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -150,7 +150,7 @@ impl Network {
 /// A network, the losses before each step, and the loss after the last.
 type Trained = (Network, Vec<f64>, f64);
 
-fn trained(fit: Fit) -> Trained {
+fn trained(fit: neuralmls_core::Trained) -> Trained {
     (Network(fit.network), fit.losses, fit.loss)
 }
 
@@ -188,7 +188,14 @@ pub(crate) fn fit(
         None => None,
     };
     let work = |report: &mut dyn FnMut(f64) -> bool| {
-        neuralmls_core::logits::neural::fit(points, samples, dim, frame, &training, report)
+        let weights = match samples {
+            Some(samples) => Weights::shape_aware(points, dim, frame, samples, &training, report)?,
+            None => Weights::neural(points, dim, frame, &training, report)?,
+        };
+        match weights {
+            Weights::Neural(trained) | Weights::ShapeAware(trained) => Ok(trained),
+            Weights::InverseDistance(_) => unreachable!("a network was trained"),
+        }
     };
     run(py, progress, work).map(trained)
 }
@@ -205,8 +212,8 @@ pub(crate) fn train(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Trained> {
     let (network, points) = (network.0.clone(), p.as_slice()?);
-    let work = |report: &mut dyn FnMut(f64) -> bool| -> Result<Fit, Error> {
-        neuralmls_core::logits::neural::train(network, points, schedule(steps), rate, report)
+    let work = |report: &mut dyn FnMut(f64) -> bool| -> Result<neuralmls_core::Trained, Error> {
+        neuralmls_core::train(network, points, schedule(steps), rate, report)
     };
     run(py, progress, work).map(trained)
 }

@@ -1,8 +1,8 @@
 //! Weights, and points bound to them.
 
 use js_sys::{Array, Float32Array, Float64Array};
-use neuralmls_core::advice::{Better, Kind, Probe};
 use neuralmls_core::progress::Progress;
+use neuralmls_core::{Better, Kind, Probe};
 use neuralmls_core::{Deformer, Error, Frame, InverseDistance, PointTree, Pose, Transform};
 use wasm_bindgen::prelude::*;
 
@@ -10,7 +10,7 @@ use crate::handles::{named, Handles};
 use crate::refused;
 
 enum Function {
-    Neural(Box<neuralmls_core::Fit>),
+    Neural(Box<neuralmls_core::Trained>),
     Classic(InverseDistance),
 }
 
@@ -41,7 +41,7 @@ impl Weights {
 }
 
 impl Weights {
-    pub(crate) fn neural(p: Vec<f64>, fit: neuralmls_core::Fit) -> Weights {
+    pub(crate) fn neural(p: Vec<f64>, fit: neuralmls_core::Trained) -> Weights {
         Weights { p, function: Function::Neural(Box::new(fit)) }
     }
 
@@ -138,19 +138,27 @@ impl Fit {
         temperature: f64,
         adherence: f64,
     ) -> Result<Array, JsError> {
-        let pose = Pose { q, turns: turns.as_deref() };
+        let pose = Pose { q, orientations: turns.as_deref() };
         if self.probe.is_none() {
             let points = Probe::points(places, self.dim, self.side);
             let logits = self.weights.logits(&points, None, &mut |_| true).map_err(refused)?;
             let own = self.control_points.logits().to_vec();
-            let probe =
-                Probe::new(&self.weights.p, self.dim, places, self.side, logits, own, Transform::Rigid);
-            self.probe = Some(probe.map_err(refused)?.careful(true));
+            let probe = Probe::of_logits(
+                &self.weights.p,
+                self.dim,
+                places,
+                self.side,
+                logits,
+                own,
+                Transform::Rigid,
+                true,
+            );
+            self.probe = Some(probe.map_err(refused)?);
         }
         let result = Array::new();
         if let Some(probe) = &mut self.probe {
             probe.set_transform(named(transform)?);
-            for advice in probe.advise(pose, temperature, adherence).map_err(refused)? {
+            for advice in probe.advise(pose, temperature, &[adherence]).map_err(refused)? {
                 let (kind, amount) = match advice.kind {
                     Kind::Folds(part) => ("folds", part),
                     Kind::Torn(stretch) => ("torn", stretch),
@@ -184,7 +192,7 @@ impl Fit {
         tell: &js_sys::Function,
     ) -> Result<Array, JsError> {
         self.points.set_transform(named(transform)?);
-        let pose = Pose { q, turns: turns.as_deref() };
+        let pose = Pose { q, orientations: turns.as_deref() };
         let deformed =
             self.points.deform(pose, temperature, maps, &mut crate::reporter(tell)).map_err(refused)?;
         let result = Array::of1(&Float64Array::from(&deformed.positions[..]));
@@ -208,7 +216,7 @@ impl Fit {
         let own = weights.logits(p, None, &mut |_| true)?;
         let control_points = Handles::of(p, dim, own)?;
         let logits = weights.logits(x, tree, progress)?;
-        let points = Deformer::new(x.to_vec(), dim, p, logits, Transform::Rigid)?;
+        let points = Deformer::of_logits(x.to_vec(), dim, p, logits, Transform::Rigid)?;
         Ok(Fit { dim, side: 2.0 * frame.half, points, control_points, probe: None, weights })
     }
 }

@@ -1,14 +1,14 @@
 //! Control points that arrive. The main thread has one of these for each frame of a drag; workers have it in their fit.
 
 use js_sys::{Array, Float64Array};
-use neuralmls_core::{Aim, Error, ExactHandles, Pose, Remedy, Transform};
+use neuralmls_core::{Aim, Error, Pose, Remedy, Transform};
 use wasm_bindgen::prelude::*;
 
 use crate::refused;
 
 /// The control points as points that are moved themselves.
 #[wasm_bindgen]
-pub struct Handles(ExactHandles);
+pub struct Handles(neuralmls_core::Handles);
 
 #[wasm_bindgen]
 impl Handles {
@@ -22,7 +22,7 @@ impl Handles {
     }
 
     /// Where to aim for the targets `q` (m x dim), turned by `turns` (m x dim x dim, NaN for those that are not; undefined: none is): as
-    /// [`ExactHandles::aim_carefully`] has it.
+    /// [`neuralmls_core::Handles::aim_carefully`] has it.
     ///
     /// # Errors
     /// Where `q` does not fit, or a number is out of its range.
@@ -34,7 +34,7 @@ impl Handles {
         temperature: f64,
         adherence: f64,
     ) -> Result<Float64Array, JsError> {
-        let pose = Pose { q, turns: turns.as_deref() };
+        let pose = Pose { q, orientations: turns.as_deref() };
         Ok(Float64Array::from(&self.aimed(pose, transform, temperature, adherence)?.targets[..]))
     }
 
@@ -51,13 +51,13 @@ impl Handles {
         temperature: f64,
         adherence: f64,
     ) -> Result<Array, JsError> {
-        let pose = Pose { q, turns: turns.as_deref() };
+        let pose = Pose { q, orientations: turns.as_deref() };
         let Aim { targets, soft, .. } = self.aimed(pose, transform, temperature, adherence)?;
         let landed = self.0.land(Pose { q: &targets, ..pose }, temperature).map_err(refused)?;
         let result = Array::of1(&Float64Array::from(&landed[..]));
         if let Some(soft) = soft {
             let (reason, control_point, amount) = soft.named();
-            let remedy = match self.0.remedy(pose, temperature, adherence).map_err(refused)? {
+            let remedy = match self.0.remedy(pose, temperature, &[adherence]).map_err(refused)? {
                 Some(Remedy::Temperature(other)) => JsValue::from_f64(other),
                 Some(Remedy::Affine) => JsValue::from_str("affine"),
                 None => JsValue::NULL,
@@ -73,7 +73,7 @@ impl Handles {
 
 impl Handles {
     pub(crate) fn of(p: &[f64], dim: usize, own_logits: Vec<f32>) -> Result<Handles, Error> {
-        ExactHandles::new(p, dim, own_logits, Transform::Rigid).map(Handles)
+        neuralmls_core::Handles::of_logits(p, dim, own_logits, Transform::Rigid).map(Handles)
     }
 
     pub(crate) fn logits(&self) -> &[f32] {
@@ -88,7 +88,7 @@ impl Handles {
         adherence: f64,
     ) -> Result<Aim, JsError> {
         self.0.set_transform(named(transform)?);
-        self.0.aim_carefully(pose, temperature, adherence).map_err(refused)
+        self.0.aim_carefully(pose, temperature, &[adherence]).map_err(refused)
     }
 }
 

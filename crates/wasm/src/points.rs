@@ -1,7 +1,6 @@
 //! The points of a shape, to which weights are fitted.
 
 use js_sys::Function;
-use neuralmls_core::logits::neural;
 use neuralmls_core::{Frame, InverseDistance, PointTree, Schedule, Training};
 use wasm_bindgen::prelude::*;
 
@@ -44,9 +43,12 @@ impl Points {
     ) -> Result<Weights, JsError> {
         let schedule = steps.map_or(Training::default().schedule, Schedule::Fixed);
         let training = Training { width, seed, schedule, ..Training::default() };
-        let fit =
-            neural::fit(&p, None, self.dim, self.frame, &training, &mut reporter(tell)).map_err(refused)?;
-        Ok(Weights::neural(p, fit))
+        let weights =
+            neuralmls_core::Weights::neural(&p, self.dim, self.frame, &training, &mut reporter(tell));
+        match weights.map_err(refused)? {
+            neuralmls_core::Weights::Neural(trained) => Ok(Weights::neural(p, trained)),
+            _ => unreachable!("neural weights were trained"),
+        }
     }
 
     /// The classic weights of the control points `p` (m x dim).
