@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::parallel::any;
+use crate::machine::parallel::any;
 
 /// What can go wrong; each says it in one sentence.
 #[derive(Clone, Debug, PartialEq, Eq)]
