@@ -131,6 +131,11 @@ impl Deformer {
         self.x.len() / self.dim
     }
 
+    /// The points, n x dim.
+    pub fn points(&self) -> &[f64] {
+        &self.x
+    }
+
     /// What the points are bound by, n x m.
     pub fn logits(&self) -> &[f32] {
         &self.logits

@@ -123,8 +123,13 @@ impl Probe {
     }
 
     /// The shape's longest side.
-    pub(crate) fn side(&self) -> f64 {
+    pub fn side(&self) -> f64 {
         self.side
+    }
+
+    /// Takes control points to their targets as [`Handles::aim_carefully`] does, or as [`Handles::aim`] does.
+    pub fn set_careful(&mut self, careful: bool) {
+        self.careful = careful;
     }
 
     /// Lets the deformations that are looked at do something else to the shape locally.

@@ -115,7 +115,7 @@ impl Map {
             false => None,
         };
         let soft = self.why_soft(aim, remedy.as_deref());
-        let mut warnings = self.not_parted()?;
+        let mut warnings: Vec<String> = self.not_parted()?.into_iter().collect();
         if soft.is_none() {
             warnings.extend(self.not_arrived(aim, remedy.as_deref()));
         }
@@ -250,7 +250,7 @@ fn angle_in<const D: usize>(map: &[f64], rotation: &[f64; 9], cosine: impl Fn(f6
     let c = std::array::from_fn(|r| {
         std::array::from_fn(|c| (0..D).map(|k| map[D * c + k] * rotation[3 * r + k]).sum())
     });
-    let missing = neuralmls_core::mls::best_rotation::<D>(&c);
+    let missing = neuralmls_core::best_rotation::<D>(&c);
     let trace: f64 = (0..D).map(|k| missing[k][k]).sum();
     cosine(trace).clamp(-1.0, 1.0).acos().to_degrees()
 }

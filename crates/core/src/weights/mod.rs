@@ -47,7 +47,8 @@ impl Weights {
         fit(p, None, dim, frame, training, progress).map(Weights::Neural)
     }
 
-    /// Trains weights of the control points `p` (m x dim) that know the shape by `samples` of it.
+    /// Trains weights of the control points `p` (m x dim) that know the shape by `samples` of it, whose labels are softened: they are the
+    /// weights at the temperature `softness`, and what the network makes of them is sharpened as much.
     ///
     /// # Errors
     /// As [`Weights::neural`], and where labels are no probabilities.
@@ -56,10 +57,12 @@ impl Weights {
         dim: usize,
         frame: Frame,
         samples: Samples<'_>,
+        softness: f32,
         training: &Training,
         progress: &mut Progress<'_>,
     ) -> Result<Weights, Error> {
-        fit(p, Some(samples), dim, frame, training, progress).map(Weights::ShapeAware)
+        let trained = fit(p, Some(samples), dim, frame, training, progress)?;
+        Ok(Weights::ShapeAware(Trained { network: trained.network.sharpened(softness), ..trained }))
     }
 
     /// Its name in every face and file.
@@ -131,7 +134,7 @@ mod tests {
         let training = Training { width: 16, ..Training::default() };
         let neural = Weights::neural(&p, 2, Frame::IDENTITY, &training, &mut |_| true).unwrap();
         let samples = Samples { x: &x, labels: &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0], batch: 2 };
-        let aware = Weights::shape_aware(&p, 2, Frame::IDENTITY, samples, &training, &mut |_| true).unwrap();
+        let aware = Weights::shape_aware(&p, 2, Frame::IDENTITY, samples, 2.0, &training, &mut |_| true).unwrap();
         let function = InverseDistance::new(&p, 2, Frame::IDENTITY, 1.0, 0.0).unwrap();
         let direct = function.logits(&x, &mut |_| true).unwrap();
         let distance = Weights::InverseDistance(function);

@@ -80,6 +80,21 @@ pub struct Trained {
     pub loss: f64,
 }
 
+impl Trained {
+    /// The same network, trained further on the control points.
+    ///
+    /// # Errors
+    /// As [`train`].
+    pub fn further(
+        &self,
+        schedule: Schedule,
+        rate: f64,
+        progress: &mut Progress<'_>,
+    ) -> Result<Trained, Error> {
+        train(self.network.clone(), &self.control_points, schedule, rate, progress)
+    }
+}
+
 /// Makes a network from a seed and trains it on the control points `p`, and on `samples` of a shape where there are any.
 ///
 /// With samples, each step sees all of the control points and a batch of the samples; the losses are those of a batch, and the
