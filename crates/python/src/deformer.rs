@@ -5,6 +5,7 @@ use neuralmls_core::{Pose, Transform};
 use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
+use crate::arrays::table;
 use crate::errors::{argument, from_core};
 use crate::progress::run;
 use crate::weights::{PointTree, Weights};
@@ -59,15 +60,22 @@ impl Deformer {
     ) -> PyResult<Deformer> {
         let (dim, transform) = (x.shape()[1], self::transform(transform)?);
         let (x, p, logits) = (x.as_slice()?, p.as_slice()?, logits.as_slice()?);
-        let bound = || neuralmls_core::Deformer::of_logits(copy_of(x)?, dim, p, copy_of(logits)?, transform);
+        let bound = || neuralmls_core::Deformer::of_logits(copy_of(x), dim, p, copy_of(logits), transform);
         Ok(Deformer { inner: bound().map_err(|error| from_core(error, None))?, dim })
     }
 
-    /// The logits of the points, n x m.
+    /// The points, n x d.
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        table(py, self.inner.points().to_vec(), self.dim)
+    }
+
+    /// What they are bound by, n x m.
+    #[getter]
     fn logits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let logits = self.inner.logits().to_vec();
         let columns = logits.len() / self.inner.len().max(1);
-        crate::arrays::table(py, logits, columns)
+        table(py, logits, columns)
     }
 
     /// Computes the weights at a temperature.
@@ -105,7 +113,7 @@ impl Deformer {
     ) -> PyResult<Deformer> {
         let tree = tree.map(|tree| &tree.0);
         let bind = |report: &mut dyn FnMut(f64) -> bool| {
-            neuralmls_core::Deformer::new(copy_of(x)?, weights, tree, transform, report)
+            neuralmls_core::Deformer::new(copy_of(x), weights, tree, transform, report)
         };
         Ok(Deformer { inner: run(py, progress, bind)?, dim })
     }

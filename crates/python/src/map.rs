@@ -2,7 +2,7 @@
 
 use neuralmls_core::Pose;
 use neuralmls_session::{Advice, Error, Held};
-use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -11,7 +11,7 @@ use crate::deformer::Deformer;
 use crate::errors::from_session;
 use crate::session::Session;
 use crate::shape_file::ShapeFile;
-use crate::weights::{PointTree, Weights};
+use crate::weights::Weights;
 
 fn raised(error: Error) -> PyErr {
     from_session(error, None)
@@ -78,8 +78,8 @@ impl Map {
             let Some(shape) = shape else {
                 return self.0.report(&aim, None);
             };
-            let round = |places: &[f64]| shape.0.round(places);
-            self.0.report(&aim, Some(&Held { format: shape.0.format().name(), round: &round, step: shape.0.step() }))
+            let round = |places: &[f64]| places.to_vec();
+            self.0.report(&aim, Some(&Held { format: shape.0.format().name(), round: &round, step: 0.0 }))
         })
         .map(Report)
         .map_err(raised)
@@ -97,7 +97,7 @@ impl Map {
         let mut failed = None;
         let mut made = || -> Option<neuralmls_session::Map> {
             Python::attach(|py| {
-                let found = other.as_ref()?.call0(py).and_then(|map| map.extract::<Option<Py<Map>>>(py));
+                let found = other.as_ref()?.call0(py).and_then(|map| Ok(map.extract::<Option<Py<Map>>>(py)?));
                 found.map_err(|error| failed = Some(error)).ok().flatten().map(|map| map.get().0.clone())
             })
         };
@@ -131,18 +131,6 @@ impl Map {
             PyArray1::from_vec(py, look.stretches),
             PyArray1::from_vec(py, far),
         ))
-    }
-
-    /// Binds points, with a tree of them where there is one.
-    fn bind(
-        &self,
-        py: Python<'_>,
-        x: PyReadonlyArray2<'_, f64>,
-        tree: Option<&PointTree>,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<Deformer> {
-        let (dim, x) = (x.shape()[1], x.as_slice()?);
-        Deformer::bound(py, x, dim, self.0.weights(), tree, self.0.transform(), progress)
     }
 
     fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {

@@ -192,6 +192,15 @@ impl Weights {
         Some(self.trained()?.loss)
     }
 
+    /// Alpha and epsilon of the classic ones.
+    #[getter]
+    fn parameters(&self) -> Option<(f64, f64)> {
+        match &*self.0 {
+            neuralmls_core::Weights::InverseDistance(function) => Some((function.alpha(), function.epsilon())),
+            _ => None,
+        }
+    }
+
     /// Weight and bias of each layer.
     #[getter]
     fn layers<'py>(&self, py: Python<'py>) -> PyResult<Vec<LayerArrays<'py>>> {

@@ -47,6 +47,12 @@ impl Map {
         Ok(Probe::new(self.weights(), &places, side, self.transform(), careful)?)
     }
 
+    /// Lets a probe of this map's weights look at it with other settings.
+    pub fn set_up(&self, probe: &mut Probe) {
+        probe.set_transform(self.transform());
+        probe.set_careful(self.session().settings.handles != HandlesSetting::Exact);
+    }
+
     /// What this map does at the places that are probed.
     ///
     /// # Errors

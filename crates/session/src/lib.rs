@@ -14,6 +14,7 @@
 //! Every refusal and every note is one line, whatever the file holds.
 
 pub mod advice;
+mod changes;
 pub mod control_points;
 mod error;
 pub mod files;

@@ -36,20 +36,20 @@ impl Handles {
 
     /// Where to aim for the targets `q` (m x dim), oriented by `orientations` (m x dim x dim, NaN for those that are not; undefined: none is):
     /// m x dim numbers; then the map that fits all control points with equal weights, from `q` as they are aimed at: its rotation (9), its
-    /// scale, its linear map (9), which the shader falls back on.
+    /// scale, its linear map (9), which the shader falls back on (dim x dim each).
     ///
     /// # Errors
     /// Where `q` does not fit.
     pub fn aim(&self, q: &[f64], orientations: Option<Vec<f64>>) -> Result<Float64Array, JsError> {
         let pose = Pose { q, orientations: orientations.as_deref() };
         let aim = self.session.aim(&self.core, pose).map_err(refused)?;
-        let anchor = self.core.anchor(Pose { q: &aim.targets, ..pose }).map_err(refused)?;
+        let anchor = self.core.anchor(&aim.targets, pose.orientations).map_err(refused)?;
         let numbers: Vec<f64> = aim
             .targets
             .into_iter()
-            .chain(anchor.rotation.into_iter().flatten())
+            .chain(anchor.rotation)
             .chain([anchor.scale])
-            .chain(anchor.linear.into_iter().flatten())
+            .chain(anchor.linear)
             .collect();
         Ok(Float64Array::from(&numbers[..]))
     }

@@ -41,7 +41,7 @@ impl Points {
     /// Where the weights are of another dimension.
     pub fn bind(&mut self, map: Map, tell: &Function) -> Result<Bound, JsError> {
         let frame = map.0.weights().frame();
-        if self.tree.as_ref().is_none_or(|tree| tree.frame() != frame) {
+        if self.tree.as_ref().is_none_or(|tree| *tree.frame() != frame) {
             let tree = PointTree::new(&self.x, self.dim, frame, &mut reporter(tell));
             self.tree = Some(tree.map_err(refused)?);
         }
@@ -55,13 +55,12 @@ impl Points {
     /// # Errors
     /// Where a face names no point.
     pub fn advise(&self, bound: &mut Bound) -> Result<String, JsError> {
-        let (map, probe) = (&bound.map, &mut bound.probe);
-        if probe.is_none() {
-            *probe = Some(map.probe(&self.x, &self.faces).map_err(refused)?);
+        if bound.probe.is_none() {
+            bound.probe = Some(bound.map.probe(&self.x, &self.faces).map_err(refused)?);
         }
-        let probe = probe.as_mut().expect("made above");
-        map.set_up(probe);
-        let found = map.advise(probe, &mut || None).map_err(refused)?;
+        let probe = bound.probe.as_mut().expect("made above");
+        bound.map.set_up(probe);
+        let found = bound.map.advise(probe, &mut || None).map_err(refused)?;
         Ok(neuralmls_session::advice_to_json(&found))
     }
 }

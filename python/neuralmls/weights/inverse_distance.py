@@ -59,9 +59,11 @@ class InverseDistanceWeights(Weights):
     @property
     def alpha(self) -> float:
         """The exponent of the squared distance."""
+        assert self._core.parameters is not None
         return self._core.parameters[0]
 
     @property
     def epsilon(self) -> float:
         """What caps the weight near a control point."""
+        assert self._core.parameters is not None
         return self._core.parameters[1]
