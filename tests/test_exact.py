@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import neuralmls as nm
-from neuralmls.experiments.published import published
 from neuralmls.protocol import Transform
+from neuralmls_research.experiments.published import published
 from studies.exact_handles import PAPER, TRAININGS, cases, compared, summary
 
 CASES = ["ShapeNetChair1", "ShapeNetChair3", "ShapeNetPlane1", "ShapeNetPlane2"]

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError, NotApplicable
     from neuralmls.exact import Aim, ExactHandles, Soft
     from neuralmls.pipeline import deform
-    from neuralmls.placement import farthest_points
+    from neuralmls.placement import farthest_of, farthest_points
     from neuralmls.point_tree import PointTree
     from neuralmls.shape import Shape, read
     from neuralmls.turns import Turn
@@ -50,6 +50,7 @@ __all__ = [
     "__version__",
     "advise",
     "deform",
+    "farthest_of",
     "farthest_points",
     "read",
     "softmax",
@@ -78,6 +79,7 @@ _HOMES = {
     "Weights": "weights",
     "advise": "advice",
     "deform": "pipeline",
+    "farthest_of": "placement",
     "farthest_points": "placement",
     "read": "shape",
     "softmax": "weights.softmax",

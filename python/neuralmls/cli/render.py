@@ -47,7 +47,8 @@ def render(
     """Draw shapes side by side into a picture.
 
     All are seen by the same camera. The options of the weights are those of deform, and matter
-    for --heat only. Needs PyVista: pip install 'neuralmls[figures]'
+    for --heat only. Needs PyVista:
+    pip install 'neuralmls[figures]' (in a checkout: pip install '.[figures]')
     """
     if heat is not None and points is None:
         raise ArgumentError("--heat names a control point: give the control points with --points")
