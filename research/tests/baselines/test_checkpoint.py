@@ -58,7 +58,7 @@ class Pickler(pickle.Pickler):
 
 
 @pytest.fixture(autouse=True)
-def _no_torch(monkeypatch):
+def no_torch(monkeypatch):
     """The stand-ins for PyTorch's names are gone after each test."""
     for module in ("torch", "torch._utils"):
         monkeypatch.setitem(sys.modules, module, types.ModuleType(module))

@@ -6,6 +6,7 @@ import hashlib
 import io
 import math
 import os
+import struct
 import zipfile
 import zlib
 from typing import Any
@@ -19,6 +20,11 @@ from neuralmls_research.baselines.checks import library
 from neuralmls_research.baselines.kpd.network import checked, shapes
 from neuralmls_research.baselines.kpd.pickled import Tensor, read_pickle
 
+# What Python's zipfile raises of broken archives beside its own error: of places before the file's start, of fields cut
+# short, of members that need a password, of methods that it does not know.
+ZIP_ERRORS = (
+    zipfile.BadZipFile, zlib.error, struct.error, ValueError, OverflowError, EOFError, OSError, RuntimeError,
+)  # fmt: skip
 MARK = "influence_param"  # of the dictionary that holds the network
 
 
@@ -62,7 +68,9 @@ def read_checkpoint(data: bytes) -> dict[str, NDArray[Any]]:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             return _tensors(archive)
-    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
+    except FileError:
+        raise
+    except ZIP_ERRORS as error:
         raise FileError(
             f"expected a PyTorch checkpoint in the zip layout (1.6 or later): {error or 'it is broken'}"
         ) from error
@@ -119,5 +127,6 @@ def _array(archive: zipfile.ZipFile, member: str, name: str, tensor: Tensor) -> 
     last = tensor.offset + sum((n - 1) * step for n, step in zip(tensor.shape, tensor.strides, strict=True))
     if tensor.offset < 0 or last >= storage.size or math.prod(tensor.shape) > storage.size:
         raise FileError(f"the tensor '{name}' is larger than its data, {storage.size} numbers")
-    steps = [step * storage.itemsize for step in tensor.strides]
+    # The step along an axis of one element is never taken, and may be any number.
+    steps = [step * storage.itemsize if n > 1 else 0 for n, step in zip(tensor.shape, tensor.strides, strict=True)]
     return np.lib.stride_tricks.as_strided(storage[tensor.offset :], tensor.shape, steps, writeable=False).copy()
