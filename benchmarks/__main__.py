@@ -42,7 +42,8 @@ def main(arguments: list[str] | None = None) -> int:
         console.print("[yellow]the machine has other work: these times are not its best[/]")
     for rival in ("torch", "molesq"):
         if not installed(rival):
-            console.print(f"{rival}: not installed, so that its bars are not held; pip install './research[bench]'")
+            told_how = f"{rival}: not installed, so that its bars are not held; pip install './research[bench]'"
+            console.print(told_how, markup=False)  # or the brackets would be a style
     limits = machine.limits(quick=given.quick)
     console.print(table.limits(limits, threads.THREADS))
     setting = Setting(limits, given.quick)
