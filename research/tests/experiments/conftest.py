@@ -27,6 +27,6 @@ def browser() -> Iterator[Browser]:
 @pytest.fixture(scope="session")
 def pictures() -> Path:
     """The folder `out` of the repository."""
-    folder = Path(__file__).resolve().parents[2] / "out"
+    folder = Path(__file__).resolve().parents[3] / "out"
     folder.mkdir(exist_ok=True)
     return folder
