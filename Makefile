@@ -68,12 +68,12 @@ fuzz: tools
 	$(BIN)/python -m pip install --quiet --editable '.[figures]'
 	@touch $@
 
-.venv/test.stamp: .venv/bin/python pyproject.toml $(RUST)
-	$(BIN)/python -m pip install --quiet --editable '.[baselines,figures,test]'
+.venv/test.stamp: .venv/bin/python pyproject.toml research/pyproject.toml $(RUST)
+	$(BIN)/python -m pip install --quiet --editable '.[figures,shape-aware,test]' --editable ./research
 	@touch $@ .venv/figures.stamp
 
-.venv/bench.stamp: .venv/bin/python pyproject.toml $(RUST)
-	$(BIN)/python -m pip install --quiet --editable '.[bench]'
+.venv/bench.stamp: .venv/bin/python pyproject.toml research/pyproject.toml $(RUST)
+	$(BIN)/python -m pip install --quiet --editable . --editable './research[bench]'
 	@touch $@
 
 tools:

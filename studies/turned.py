@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 import neuralmls as nm
-from neuralmls.control_points import ControlPoints
+from neuralmls import ControlPoints
 from neuralmls.samples import make
 
 TURNED = {"armrest-left": (0, 1, 0), "back-top-left": (1, 0, 0), "back-left-foot": (0, 1, 0)}

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import neuralmls as nm
-from neuralmls.control_points import ControlPoints
+from neuralmls import ControlPoints
 from neuralmls.figures.render import Panel, render
 from neuralmls.samples import make
 
