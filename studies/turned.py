@@ -27,7 +27,7 @@ def main() -> None:
     w = nm.softmax(weights.logits(points.sources))
     print("| turned | u | rho | missing there | most elsewhere |\n|---|---|---|---|---|")
     for name, axis in TURNED.items():
-        turned = points.turned({name: nm.Turn(axis, DEGREES)})
+        turned = points.oriented({name: nm.Orientation(axis, DEGREES)})
         i = points.names.index(name)
         for power in POWERS:
             for size in SIZES:

@@ -16,7 +16,7 @@ from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import FileError
 from neuralmls.files import as_path, read_bytes, write_atomically
 from neuralmls.placement import as_indices
-from neuralmls.report import Advice, Report
+from neuralmls.report import Advice, Look, Report
 from neuralmls.shape import Shape
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
 
@@ -241,6 +241,18 @@ class Map:
             Advice(kind, sentence, tuple(where), tuple(names[i] for i in near), amount)  # type: ignore[arg-type]
             for kind, sentence, where, near, amount in self._core.advise(x, as_indices(triangles, len(x)), other)
         ]
+
+    def look(self, shape: Shape | ArrayLike, faces: ArrayLike | None = None) -> Look:
+        """Return what the map does at 4,000 places of a shape: what `advise` judges by.
+
+        Raises
+        ------
+        ArgumentError
+            There are no points, or a face names none.
+        """
+        x = shape.positions if isinstance(shape, Shape) else as_points("x", shape, self.session.points.dimension)
+        triangles = shape.faces if isinstance(shape, Shape) else faces
+        return Look(*self._core.look(x, as_indices(triangles, len(x))))
 
     def _shape_aware(self, x: NDArray[np.float64], faces: ArrayLike | None) -> _core.Map | None:
         """The same with weights that know the shape; None where they cannot be fitted."""

@@ -43,7 +43,7 @@ def edit(*, shape: Path | None, points: Path | None, port: int | None, browser: 
 
     with EditorServer(session, port=port) as server:
         console.line(f"neuralmls: the editor is at {server.url} until Ctrl-C")
-        if browser and not webbrowser.open(server.url):
+        if browser and not webbrowser.open(server.url_once()):
             console.line("neuralmls: no browser could be opened here: open that address in one")
         try:
             server.serve_forever()

@@ -57,7 +57,8 @@ def arguments(method: str, shape: Shape, p: ArrayLike, q: ArrayLike) -> tuple[Ar
 
 def unit_of(x: Array) -> tuple[Array, float]:
     """Centre and half of the longest side of the box of points: what keeps their digits far from the origin."""
-    centre, half = box_around(x)
+    low, high = box_around(x)
+    centre, half = low + (high - low) / 2, float((high - low).max()) / 2 or 1.0
     return np.array(centre), half
 
 

@@ -86,7 +86,7 @@ def compare(
         raise ArgumentError(f"--scatter: distortion is that of a surface, and {shape} has no faces")
     if output is not None:
         outputs.make_folder(output)
-    if control_points.is_turned:
+    if control_points.is_oriented:
         warnings.append("rotations of control points are left out: the other methods have none")
     for sentence in warnings:
         console.warning(sentence)

@@ -88,7 +88,8 @@ def measure(
     after, sources, targets = (
         as_points(name, values, before.shape[1]) for name, values in (("y", y), ("p", p), ("q", q))
     )
-    centre, half = box_around(before)
+    low, high = box_around(before)
+    centre, half = low + (high - low) / 2, float((high - low).max()) / 2 or 1.0
     errors = handle_errors(before, after, sources, targets) / half
     at_points = None if f is None else float(np.linalg.norm(f(sources) - targets, axis=1).mean() / half)
     folded = None if f is None else folded_places(f, before, step=STEP * half)
