@@ -1,6 +1,6 @@
 //! Errors of the crates as exceptions of the package.
 
-use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError};
 use pyo3::prelude::*;
 
 /// An exception of `neuralmls.errors`.
@@ -31,6 +31,7 @@ pub(crate) fn from_core(error: neuralmls_core::Error, cause: Option<PyErr>) -> P
 pub(crate) fn from_shapes(error: &neuralmls_shapes::Error) -> PyErr {
     match error.kind {
         neuralmls_shapes::ErrorKind::Argument => argument(error.message.clone()),
+        neuralmls_shapes::ErrorKind::Memory => PyMemoryError::new_err(error.message.clone()),
         _ => exception("FileError", error.to_string()),
     }
 }
