@@ -189,7 +189,7 @@ def _bent(shape: Shape, file: Path, map: Map, stages: Stages, *, check: bool, fo
         if file == outputs.STANDARD_OUTPUT:
             sys.stdout.buffer.write(shape.encode(positions, maps=maps)[0])
             sys.stdout.buffer.flush()
-            written, kept = [], []
+            written, kept = list[str](), list[str]()
         else:
             written, kept = outputs.write_shape(shape, file, positions, maps=maps, force=force)
     return summary.summary(shape, file, map, told, advice if check else None, written, kept)
