@@ -63,7 +63,7 @@ pub(crate) fn session_of(document: Document) -> Result<Read, Error> {
         return Err(error);
     }
     session.others.extend(keys);
-    Ok(Read { session, notes })
+    Ok(Read { session, notes, left_out: Vec::new() })
 }
 
 fn entries(list: &[Value], version: u8, notes: &mut Vec<String>) -> Result<Vec<ControlPoint>, Error> {
