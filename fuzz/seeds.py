@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 POSITIONS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0.5)]
+SESSIONS = Path(__file__).parent.parent / "tests" / "sessions"
 FACES = [(0, 1, 2), (0, 2, 3)]
 
 
@@ -139,8 +140,14 @@ def npy() -> dict[str, bytes]:
     }
 
 
+def session() -> dict[str, bytes]:
+    """The files of tests/sessions."""
+    files = [path for path in SESSIONS.glob("*/*") if path.stat().st_size < 4096]
+    return {f"{path.parent.name}-{path.name}": path.read_bytes() for path in files}
+
+
 def main(folder: Path) -> None:
-    for make in (obj, off, table, ply, stl, gltf, glb, npy):
+    for make in (obj, off, table, ply, stl, gltf, glb, npy, session):
         target = folder / make.__name__
         target.mkdir(parents=True, exist_ok=True)
         for name, content in make().items():
