@@ -68,7 +68,8 @@ impl Session {
 /// What shaders, which have arithmetic of their own, take from the core: JSON.
 #[wasm_bindgen]
 pub fn constants() -> String {
-    format!("{{\"anchor_weight\": {:e}}}", neuralmls_core::ANCHOR_WEIGHT)
+    let (anchor_weight, ridge) = (neuralmls_core::ANCHOR_WEIGHT, neuralmls_core::RIDGE);
+    format!("{{\"anchor_weight\": {anchor_weight:e}, \"ridge\": {ridge:e}}}")
 }
 
 /// The settings that hold where nothing is said, as a session file has them.
