@@ -52,6 +52,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder with shape.obj and points.csv, which is the current one."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "shape.obj").write_text(SHAPE)
+    (tmp_path / "shape.mtl").write_text("newmtl oak\n")
     (tmp_path / "points.csv").write_text(POINTS)
     return tmp_path
 
