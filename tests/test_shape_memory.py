@@ -13,9 +13,10 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="limits of memor
 
 # Reads, rounds and writes a shape with so many MiB more than the process has before.
 LIMITED = """
-import resource, sys
+import binascii, resource, sys
 import numpy as np
 import neuralmls as nm
+nm.read
 pages = int(open("/proc/self/statm").read().split()[0])
 limit = pages * resource.getpagesize() + int(float(sys.argv[2]) * 2**20)
 resource.setrlimit(resource.RLIMIT_AS, (limit, limit))

@@ -19,7 +19,6 @@ PROGRAM = "import sys; from neuralmls.cli import main; sys.exit(main())"
 # Two quads, one above the other, with things that a deformation has nothing to do with.
 SHAPE = """\
 # a comment, and  two  blanks
-mtllib shape.mtl
 g lower
 v 0 0 0
 v 1 0 0
@@ -52,7 +51,6 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder with shape.obj and points.csv, which is the current one."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "shape.obj").write_text(SHAPE)
-    (tmp_path / "shape.mtl").write_text("newmtl oak\n")
     (tmp_path / "points.csv").write_text(POINTS)
     return tmp_path
 
