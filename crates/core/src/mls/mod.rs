@@ -17,7 +17,7 @@ mod similarity;
 mod transform;
 
 pub use affine::RIDGE;
-pub use rotation::ANCHOR_WEIGHT;
+pub use rotation::{best_rotation, ANCHOR_WEIGHT};
 pub use transform::Transform;
 
 use crate::geometry::Frame;

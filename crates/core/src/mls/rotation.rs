@@ -86,7 +86,7 @@ fn gap(n: [[f64; 4]; 4]) -> f64 {
 }
 
 /// The rotation `R` that maximises `tr(R C)`.
-pub(super) fn best_rotation<const D: usize>(c: &Matrix<D>) -> Matrix<D> {
+pub fn best_rotation<const D: usize>(c: &Matrix<D>) -> Matrix<D> {
     let mut r = [[1.0; D]; D];
     match D {
         1 => {}
