@@ -58,7 +58,7 @@ export function toDocument(session: Session, dim: 1 | 2 | 3): SessionDocument {
     }),
     settings: settingsEntry(settings),
     ...(frame && { frame }),
-    editor: { ...editorOf(others), mirror: settings.mirror },
+    ...(settings.mirror && { editor: { ...editorOf(others), mirror: settings.mirror } }),
   };
 }
 
