@@ -5,7 +5,6 @@ BIN := .venv/bin
 RUST := Cargo.toml Cargo.lock $(shell find crates -name '*.rs' -o -name Cargo.toml)
 FUZZ_SECONDS ?= 30
 TARGET := $(or $(CARGO_TARGET_DIR),target)
-WASM_BINDGEN := $(TARGET)/tools/bin/wasm-bindgen
 # The property tests' random numbers: the same every time, so that what passes here passes elsewhere.
 export PROPTEST_RNG_SEED ?= 1
 
@@ -39,12 +38,8 @@ wasm-target: tools
 # Builds the browser editor into the package, from where `neuralmls edit` serves it and wheels take it.
 editor: wasm-target node .venv/figures.stamp
 	RUSTFLAGS="-C target-feature=+simd128" cargo build --release --locked -p neuralmls-wasm --target wasm32-unknown-unknown
-	@version=$$(cargo pkgid wasm-bindgen | sed 's/.*[@#]//'); \
-	$(WASM_BINDGEN) --version 2>/dev/null | grep -qF "$$version" || { \
-	install="cargo install --quiet --root $(TARGET)/tools --bin wasm-bindgen wasm-bindgen-cli@$$version"; \
-	$$install --locked || $$install; } # A mirror of crates.io may lack what is locked.
-	$(WASM_BINDGEN) --target web --out-dir editor/src/wasm --remove-name-section --remove-producers-section \
-		$(TARGET)/wasm32-unknown-unknown/release/neuralmls_wasm.wasm
+	cargo run --quiet --locked --profile tool -p neuralmls-bindgen -- \
+		$(TARGET)/wasm32-unknown-unknown/release/neuralmls_wasm.wasm editor/src/wasm
 	node editor/scripts/samples.mjs $(BIN)/neuralmls editor/public/samples
 	cd editor && npm ci --no-audit --no-fund --silent && npm run --silent build
 
