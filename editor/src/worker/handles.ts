@@ -7,7 +7,7 @@ import { type SessionDocument, settingsEntry } from "../model/document.ts";
 import type { Aim, Handles } from "../model/handles.ts";
 import type { Settings } from "../model/settings.ts";
 import { Handles as CoreHandles } from "../wasm/neuralmls_wasm.js";
-import { narrow, narrowMaps, widenInto } from "./coordinates.ts";
+import { narrow, narrowMaps, widenInto, widenMaps } from "./coordinates.ts";
 import { withSession } from "./sessions.ts";
 
 /** Of a session with control points of `dim` coordinates, with the logits at their own places (m x m). */
@@ -25,10 +25,10 @@ export function createHandles(document: SessionDocument, dim: number, ownLogits:
       }
       const found = handles.aim(narrow(targets, dim), orientations && narrowMaps(orientations, dim));
       widenInto(aim.targets, found, dim);
-      const anchor = found.subarray(m * dim);
-      aim.rotation.set(anchor.subarray(0, 9));
-      aim.scale = anchor[9];
-      aim.linear.set(anchor.subarray(10));
+      const [anchor, size] = [found.subarray(m * dim) as Float64Array<ArrayBuffer>, dim * dim];
+      aim.rotation.set(widenMaps(anchor.subarray(0, size), dim));
+      aim.scale = anchor[size];
+      aim.linear.set(widenMaps(anchor.subarray(size + 1), dim));
       return aim;
     },
     free: () => handles.free(),
