@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import neuralmls as nm
-from neuralmls.protocol import Transform
+from neuralmls.handles import Transform
 
 CASES = ["ShapeNetChair1", "ShapeNetChair3", "ShapeNetPlane1", "ShapeNetPlane2"]
 # A bar of 4 x 1 x 1 as a grid of points, and control points along it.
@@ -35,15 +35,15 @@ def moved(index: int, *offset: float) -> np.ndarray:
 
 @pytest.mark.parametrize("transform", ["rigid", "similarity", "affine"])
 @pytest.mark.parametrize("temperature", [0.05, 1.0, 5.0])
-@pytest.mark.parametrize("adherence", [0.0, 1.0])
+@pytest.mark.parametrize("handles", ["soft", "exact"])
 @pytest.mark.parametrize("kind", ["neural", "inverse-distance"])
 def test_unmoved_and_rigidly_moved_control_points_need_no_advice(
-    weights: nm.NeuralWeights, kind: str, transform: Transform, temperature: float, adherence: float
+    weights: nm.NeuralWeights, kind: str, transform: Transform, temperature: float, handles: str
 ) -> None:
     function = weights if kind == "neural" else nm.InverseDistanceWeights(ALONG)
     turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
     for q in (ALONG, ALONG @ turn.T + [5, 6, 7]):
-        options = {"transform": transform, "temperature": temperature, "adherence": adherence}
+        options = {"transform": transform, "temperature": temperature, "handles": handles}
         assert nm.advise(BAR, None, function, q, **options) == []
 
 
@@ -65,16 +65,16 @@ def test_handles_that_stop_short_are_named_with_what_takes_them_there(weights: n
     assert advice.control_points[0] == "abcd"[worst]
     assert advice.where == tuple(ALONG[worst])
     assert advice.amount == pytest.approx(misses.max())
-    assert f"at adherence 0: '{'abcd'[worst]}' by" in advice.sentence
+    assert f"with soft handles: '{'abcd'[worst]}' by" in advice.sentence
     assert "exact handles arrive" in advice.sentence
-    assert nm.advise(BAR, None, short, moved(3, 0, 1, 0), adherence=1.0) == []
+    assert nm.advise(BAR, None, short, moved(3, 0, 1, 0), handles="exact") == []
 
 
 def test_targets_that_contradict_each_other_are_said_to() -> None:
     p = np.array([[0.0, 0, 0], [0.01, 0, 0], [0, 2, 0], [1, 2, 1.5]])
     q = np.array([[0.0, 0, 0], [3, 0, 0], [0, 2, 0], [1, 2, 1.5]])
     close = nm.NeuralWeights.fit(p, bounds=[[0, 0, 0], [1, 2, 1.5]], width=32, steps=20)
-    advice = nm.advise(p, None, close, q, adherence=1.0)[0]
+    advice = nm.advise(p, None, close, q, handles="exact")[0]
     assert advice.kind == "misses"
     assert {"p1", "p2"} & set(advice.control_points[:2])
 
@@ -149,15 +149,15 @@ def test_lines_and_planes_get_advice_too() -> None:
 
 
 @pytest.mark.parametrize("name", CASES)
-@pytest.mark.parametrize("adherence", [0.0, 1.0])
-def test_people_in_the_user_study_would_have_got_little_advice(data: Path, name: str, adherence: float) -> None:
+@pytest.mark.parametrize("handles", ["soft", "exact"])
+def test_people_in_the_user_study_would_have_got_little_advice(data: Path, name: str, handles: str) -> None:
     shape = nm.read(data / "shapenet" / name / "model.obj")
     case = json.loads((data / "shapenet" / "control_points.json").read_text())[name]
     half, centre = np.ptp(shape.bounds, axis=0).max() / 2, shape.bounds.mean(axis=0)
     p = np.array(case["control_points"]) * half + centre
     function = nm.NeuralWeights.fit(p, bounds=shape.bounds)
     found = {
-        study: kinds(nm.advise(shape.positions, shape.faces, function, p + np.array(o) * half, adherence=adherence))
+        study: kinds(nm.advise(shape.positions, shape.faces, function, p + np.array(o) * half, handles=handles))
         for study, o in case["offsets"].items()
     }
     # Its rear wings are moved through each other.
@@ -165,7 +165,7 @@ def test_people_in_the_user_study_would_have_got_little_advice(data: Path, name:
     assert {study: told for study, told in found.items() if told} == expected
     # Three times as far, every shape is told of.
     far = p + 3 * np.array(case["offsets"]["user_study_3"]) * half
-    assert kinds(nm.advise(shape.positions, shape.faces, function, far, adherence=adherence))
+    assert kinds(nm.advise(shape.positions, shape.faces, function, far, handles=handles))
 
 
 def test_wrong_arguments_are_refused_in_a_sentence(weights: nm.NeuralWeights) -> None:

@@ -333,7 +333,7 @@ def test_without_turns_there_are_no_rotations_and_files_are_as_before(tmp_path: 
     points = ControlPoints.read(written(tmp_path, json.dumps(document(SEAT, BACK))))
     assert points.rotations is None
     assert points.scales is None
-    assert not points.is_turned
+    assert not points.is_oriented
     points.write(tmp_path / "again.json")
     assert (tmp_path / "again.json").read_text() == (
         '{\n  "format": "neuralmls-control-points",\n  "version": 1,\n  "control_points": [\n'
@@ -350,7 +350,7 @@ def test_turns_come_back_bit_for_bit(tmp_path: Path, d: int) -> None:
         Turn(tuple(axis.tolist()) if d == 3 else (), float(rng.uniform(-400, 400)) if d > 1 else 0.0, float(scale))
         for axis, scale in zip(axes, rng.uniform(0.1, 3, 5), strict=True)
     ]
-    points = ControlPoints(rng.normal(size=(6, d)), turns=[*turns, None])
+    points = ControlPoints(rng.normal(size=(6, d)), orientations=[*turns, None])
     points.write(tmp_path / "turned.json")
     jsonschema.validate(json.loads((tmp_path / "turned.json").read_text()), SCHEMA)
     again = ControlPoints.read(tmp_path / "turned.json")
@@ -361,7 +361,7 @@ def test_turns_come_back_bit_for_bit(tmp_path: Path, d: int) -> None:
 
 
 def test_csv_that_would_lose_a_turn_is_refused(tmp_path: Path) -> None:
-    points = ControlPoints([[0, 0, 0]], turns=[Turn((0, 0, 1), 10)])
+    points = ControlPoints([[0, 0, 0]], orientations=[Turn((0, 0, 1), 10)])
     with pytest.raises(FileError, match="holds no rotations"):
         points.write(tmp_path / "points.csv")
     assert not (tmp_path / "points.csv").exists()
@@ -390,18 +390,18 @@ def test_a_turn_that_is_none_is_refused_by_its_place(
 
 
 def test_turns_add_up_and_unknown_names_are_refused() -> None:
-    points = ControlPoints([[0, 0, 0], [1, 0, 0]], names=["a", "b"]).turned({"a": Turn((0, 0, 1), 30)})
-    again = points.turned({"a": Turn((0, 0, 1), 45)}).moved({"b": [0, 1, 0]})
+    points = ControlPoints([[0, 0, 0], [1, 0, 0]], names=["a", "b"]).oriented({"a": Turn((0, 0, 1), 30)})
+    again = points.oriented({"a": Turn((0, 0, 1), 45)}).moved({"b": [0, 1, 0]})
     assert again.turns[1] is None
     assert again.turns[0] is not None
     assert again.turns[0].degrees == pytest.approx(75)
     assert again.turns[0].axis == pytest.approx((0, 0, 1))
     with pytest.raises(ArgumentError, match="nearest name is 'a'"):
-        points.turned({"aa": Turn((0, 0, 1), 30)})
+        points.oriented({"aa": Turn((0, 0, 1), 30)})
     with pytest.raises(ArgumentError, match="'b' is in space"):
-        points.turned({"b": Turn(degrees=30)})
+        points.oriented({"b": Turn(degrees=30)})
     with pytest.raises(ControlPointError, match="'p1' has 2 coordinates"):
-        ControlPoints([[0, 0]], turns=[Turn((0, 0, 1), 30)])
+        ControlPoints([[0, 0]], orientations=[Turn((0, 0, 1), 30)])
 
 
 def test_any_rotation_is_a_turn() -> None:

@@ -132,7 +132,7 @@ def test_a_moved_leg_leaves_the_leg_beside_it() -> None:
     q[3] += [0, 0.5, 0]  # a leg swings forwards
     kept = np.where((x[:, 0] > 0.05) & (x[:, 0] < 0.2))[0]
     moved = {
-        kind: np.linalg.norm(nm.deform(x, p, q, weights=kind, faces=faces, exact=True) - x, axis=1)[kept].max()
+        kind: np.linalg.norm(nm.deform(x, p, q, weights=kind, faces=faces, handles="exact") - x, axis=1)[kept].max()
         for kind in ("neural", "shape-aware")
     }
     assert moved["shape-aware"] < 0.5 * moved["neural"]
@@ -152,7 +152,7 @@ def test_identity_and_rigid_motion() -> None:
     assert np.array_equal(nm.deform(x, p, p, weights="shape-aware", faces=faces), x)
     c, s = np.cos(0.4), np.sin(0.4)
     turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-    y = nm.deform(x, p, p @ turn.T + 2, weights="shape-aware", faces=faces, exact=True)
+    y = nm.deform(x, p, p @ turn.T + 2, weights="shape-aware", faces=faces, handles="exact")
     assert np.abs(y - (x @ turn.T + 2)).max() < 1e-9
 
 

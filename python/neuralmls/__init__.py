@@ -5,7 +5,10 @@
 >>> x = np.random.default_rng(0).uniform(-1, 1, (100, 3))         # any points: a mesh's vertices, a cloud
 >>> p = [[-1, 0, 0], [1, 0, 0], [0, 1, 0]]                        # control points at rest
 >>> q = [[-1, 0, 0], [1, 0, 0], [0, 1.5, 0]]                      # and moved
->>> nm.deform(x, p, q, weights="inverse-distance").shape
+>>> nm.deform(x, p, q, weights="inverse-distance").shape          # all in one call
+(100, 3)
+>>> map = nm.Session(nm.ControlPoints(p, q)).fit(x)               # or fitted once: a map of space, to be kept
+>>> map.at(x).shape
 (100, 3)
 """
 
@@ -15,16 +18,19 @@ from typing import TYPE_CHECKING
 from neuralmls._core import VERSION as __version__
 
 if TYPE_CHECKING:
-    from neuralmls.advice import Advice, advise
+    from neuralmls.advice import advise
     from neuralmls.control_points import ControlPoints
     from neuralmls.deformer import Deformer
     from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError, NotApplicable
-    from neuralmls.exact import Aim, ExactHandles, Soft
+    from neuralmls.handles import Aim, ExactHandles, Soft
+    from neuralmls.map import Map
+    from neuralmls.orientations import Orientation
     from neuralmls.pipeline import deform
     from neuralmls.placement import farthest_points
     from neuralmls.point_tree import PointTree
+    from neuralmls.report import Advice, Report
+    from neuralmls.session import Session
     from neuralmls.shape import Shape, read
-    from neuralmls.turns import Turn
     from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
     from neuralmls.weights.softmax import softmax
 
@@ -38,14 +44,17 @@ __all__ = [
     "ExactHandles",
     "FileError",
     "InverseDistanceWeights",
+    "Map",
     "NeuralMLSError",
     "NeuralWeights",
     "NotApplicable",
+    "Orientation",
     "PointTree",
+    "Report",
+    "Session",
     "Shape",
     "ShapeAwareWeights",
     "Soft",
-    "Turn",
     "Weights",
     "__version__",
     "advise",
@@ -58,23 +67,26 @@ __all__ = [
 # Which module has which name. They are imported when first asked for: `neuralmls --help` need not wait for numpy.
 # No module may be called like a name that another one gives: importing it would hide that name.
 _HOMES = {
-    "Advice": "advice",
-    "Aim": "exact",
+    "Advice": "report",
+    "Aim": "handles",
     "ArgumentError": "errors",
     "ControlPointError": "errors",
     "ControlPoints": "control_points",
     "Deformer": "deformer",
-    "ExactHandles": "exact",
+    "ExactHandles": "handles",
     "FileError": "errors",
     "InverseDistanceWeights": "weights",
+    "Map": "map",
     "NeuralMLSError": "errors",
     "NeuralWeights": "weights",
     "NotApplicable": "errors",
+    "Orientation": "orientations",
     "PointTree": "point_tree",
+    "Report": "report",
+    "Session": "session",
     "Shape": "shape",
     "ShapeAwareWeights": "weights",
-    "Soft": "exact",
-    "Turn": "turns",
+    "Soft": "handles",
     "Weights": "weights",
     "advise": "advice",
     "deform": "pipeline",

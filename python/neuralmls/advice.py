@@ -1,55 +1,20 @@
-"""Honest advice: where a deformation is likely bad, and what would help.
-
-What is measured, and from when on it is told, stands in crates/core/src/advice.rs, which the editor has it from too.
-"""
+"""Advice about weights and targets that are not (yet) a session; `Map.advise` has it of a session."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal, TypeAlias, cast
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from neuralmls.arrays import as_number
-from neuralmls.errors import ArgumentError, NeuralMLSError
-from neuralmls.probe import Array, Probe
-from neuralmls.protocol import Transform, Weights
-from neuralmls.turns import Rotations, Scales
-from neuralmls.weights import ShapeAwareWeights
-
-Kind: TypeAlias = Literal["misses", "folds", "torn", "ungoverned"]
-
-# A soft handle may stop short by this part of the longest move (study: up to 0.075), and of the longest side (0.011);
-# an exact one by this part of the side.
-SHORT, WIDE, ARRIVED = 0.1, 0.02, 1e-6
-LISTED = 5
-
-
-@dataclass(frozen=True)
-class Advice:
-    """One thing that is likely bad about a deformation.
-
-    Attributes
-    ----------
-    kind : "misses", "folds", "torn" or "ungoverned"
-    sentence : str
-        What is likely bad, where, and what would help.
-    where : tuple of d floats
-        The worst place, at rest.
-    control_points : tuple of str
-        The names of those that it is about, the worst first.
-    amount : float
-        How bad: the greatest distance from a target (misses), the part of the shape (folds), the greatest stretch
-        (torn), the distance to the nearest control point (ungoverned).
-    """
-
-    kind: Kind
-    sentence: str
-    where: tuple[float, ...]
-    control_points: tuple[str, ...]
-    amount: float
+from neuralmls.arrays import as_points
+from neuralmls.control_points import ControlPoints
+from neuralmls.errors import ArgumentError
+from neuralmls.handles import Transform
+from neuralmls.map import Map
+from neuralmls.orientations import Orientation, Rotations, Scales, as_orientations
+from neuralmls.report import Advice
+from neuralmls.session import Handles, Session
+from neuralmls.weights import Weights
 
 
 def advise(
@@ -60,22 +25,12 @@ def advise(
     *,
     transform: Transform = "rigid",
     temperature: float = 1.0,
-    adherence: float = 0.0,
+    handles: Handles = "soft",
     rotations: Rotations = None,
     scales: Scales = None,
-    careful: bool = False,
     names: Sequence[str] | None = None,
 ) -> list[Advice]:
-    """Return what is likely bad about a deformation, and what would help; nothing where all control points stay or
-    move rigidly.
-
-    - misses: control points that stop short of their targets;
-    - folds: places where space is turned inside out, `det J <= 0`, with `J` the Jacobian of the deformation;
-    - torn: places where `J` stretches far more than in most places, as between control points that move apart;
-    - ungoverned: a part that moves, and is far from all control points.
-
-    What would help was tried: another temperature, soft handles and, where neither does, shape-aware weights (if SciPy
-    is there) are named only where they at least halve it; exact handles only where they arrive.
+    """Return what is likely bad about a deformation, and what would help (see `Map.advise`).
 
     Parameters
     ----------
@@ -86,10 +41,10 @@ def advise(
     weights : Weights
         The weight function of the control points, in the units of `x`.
     targets : (m, d)
-    transform, temperature, adherence, rotations, scales
-        As `Deformer` has them.
-    careful : bool
-        Whether the control points go as `ExactHandles.aim_carefully` takes them, and `neuralmls deform`.
+    transform, temperature, handles
+        As `Session` has them.
+    rotations, scales
+        As `Deformer.deform` has them.
     names : sequence of m str, optional
         What to call the control points; p1, p2, ... if not given.
 
@@ -100,6 +55,7 @@ def advise(
 
     Examples
     --------
+    >>> import numpy as np
     >>> from neuralmls import InverseDistanceWeights
     >>> x = np.linspace(0, 1, 21)[:, None]
     >>> weights = InverseDistanceWeights([[0.0], [0.4], [0.6], [1.0]])
@@ -108,113 +64,51 @@ def advise(
     >>> [advice.kind for advice in advise(x, None, weights, [[0.0], [0.7], [0.3], [1.0]])]
     ['folds']
     """
-    probe = Probe(x, faces, weights, targets, transform, rotations=rotations, scales=scales, careful=careful)
-    named = tuple(f"p{i + 1}" for i in range(len(probe.p))) if names is None else tuple(names)
-    if len(named) != len(probe.p):
-        raise ArgumentError(f"names: expected {len(probe.p)} of them, found {len(named)}")
-    setting = _Setting(as_number("temperature", temperature, 0), adherence)
-    misses = _misses(probe, named, setting)
-    found = [] if misses is None else [misses]
-    for kind, amount, place, near, better in probe.core.advise(probe.q, probe.turns, setting.temperature, adherence):
-        at = probe.places[place]
-        if kind == "ungoverned":
-            away = float(np.linalg.norm(at - probe.p[near[0]]))
-            found.append(
-                _advice("ungoverned", _ungoverned(named[near[0]], at, away, amount), named, near[:1], at, away)
-            )
-            continue
-        help = _better(better) or _shape_aware(probe, setting, kind)
-        if kind == "folds":
-            help = help or "move the control points there less far towards or past each other"
-            sentence = (
-                f"{_percent(amount)} of the shape is folded over, most of all near '{named[near[0]]}', at {_at(at)}; "
-            )
-        else:
-            help = help or "move them less far apart, or put control points between them"
-            sentence = (
-                f"the shape is torn between '{named[near[0]]}' and '{named[near[1]]}', stretched up to {amount:.0f} "
-                f"times at {_at(at)}; "
-            )
-        near = near if kind == "torn" else near[:1]
-        found.append(_advice(cast(Kind, kind), sentence + help, named, near, at, amount))
-    return found
+    return fitted(
+        weights,
+        targets,
+        transform=transform,
+        temperature=temperature,
+        handles=handles,
+        rotations=rotations,
+        scales=scales,
+        names=names,
+    ).advise(x, faces)
 
 
-@dataclass(frozen=True)
-class _Setting:
-    """What a person can change without moving anything."""
+def fitted(
+    weights: Weights,
+    targets: ArrayLike,
+    *,
+    transform: Transform,
+    temperature: float,
+    handles: Handles,
+    rotations: Rotations = None,
+    scales: Scales = None,
+    names: Sequence[str] | None = None,
+) -> Map:
+    """Return the map of weights that were fitted already, as `advise` has its parameters."""
+    p = weights.control_points
+    q = as_points("targets", targets, p.shape[1])
+    if len(q) != len(p):
+        raise ArgumentError(f"targets: expected {len(p)} of them, found {len(q)}")
+    if names is not None and len(names) != len(p):
+        raise ArgumentError(f"names: expected {len(p)} of them, found {len(names)}")
+    points = ControlPoints(p, q, names, _orientations(rotations, scales, *p.shape))
+    kind = weights._kind
+    session = Session(points, weights=kind, transform=transform, temperature=temperature, handles=handles)  # type: ignore[arg-type]
+    return Map.of(session, weights)
 
-    temperature: float
-    adherence: float
 
+def _orientations(rotations: Rotations, scales: Scales, count: int, dimension: int) -> list[Orientation | None] | None:
+    """Scaled rotation matrices as what control points carry."""
+    import numpy as np
 
-def _misses(probe: Probe, names: tuple[str, ...], setting: _Setting) -> Advice | None:
-    """Control points that stop short of their targets."""
-    distance = probe.missed(setting.temperature, setting.adherence)
-    longest = float(np.linalg.norm(probe.q - probe.p, axis=1).max())
-    allowed = ARRIVED * probe.side
-    if setting.adherence == 0:
-        allowed = max(allowed, min(SHORT * longest, WIDE * probe.side))
-    short = [int(i) for i in (-distance).argsort() if distance[i] > allowed]
-    if not short:
+    scaled = as_orientations(rotations, scales, count, dimension)
+    if scaled is None:
         return None
-    listed = ", ".join(f"'{names[i]}' by {distance[i]:.3g}" for i in short[:LISTED])
-    listed += f" and {len(short) - LISTED} more" if len(short) > LISTED else ""
-    sentence = f"control points stop short of their targets, at adherence {setting.adherence:g}: {listed}; "
-    sentence += _what_arrives(probe, setting)
-    return _advice("misses", sentence, names, short, probe.p[short[0]], distance[short[0]])
-
-
-def _what_arrives(probe: Probe, setting: _Setting) -> str:
-    """What takes the control points to their targets."""
-    if probe.exact.aim_carefully(probe.q, setting.temperature, **probe.carried).soft is None:
-        return "exact handles arrive"
-    remedy = probe.exact.remedy(probe.q, setting.temperature, **probe.carried)
-    if remedy is not None:
-        return f"exact handles arrive {remedy}"
-    return "even exact handles, a lower temperature or the affine transform do not take them there: move them less"
-
-
-def _ungoverned(name: str, place: Array, away: float, spacings: float) -> str:
-    """A part that moves, and is far from all control points."""
-    return (
-        f"no control point governs the part around {_at(place)}, which moves all the same: the nearest, '{name}', is "
-        f"{away:.3g} away, {spacings:.1f} times as far as they are from each other; put a control point there"
-    )
-
-
-def _better(found: tuple[float | None, float] | None) -> str:
-    """What the core has found to at least halve it, in words."""
-    if found is None:
-        return ""
-    temperature, part = found
-    how = "without exact handles" if temperature is None else f"at temperature {temperature:g}"
-    return f"{how} it is {_percent(part)}"
-
-
-def _shape_aware(probe: Probe, setting: _Setting, kind: str) -> str:
-    """Whether weights that know the shape at least halve what is folded or torn, in words; nothing if not."""
-    if isinstance(probe.weights, ShapeAwareWeights) or probe.p.shape[1] == 1:
-        return ""
-    try:
-        weights = ShapeAwareWeights.fit(probe.p, probe.x, probe.faces)
-    except NeuralMLSError:  # no SciPy, or no size to measure by
-        return ""
-    other = Probe(probe.x, probe.faces, weights, probe.q, probe.transform, **probe.carried, careful=probe.careful)
-    now, then = (
-        each.core.parts(each.q, each.turns, setting.temperature, setting.adherence)[kind == "torn"]
-        for each in (probe, other)
-    )
-    return f"with shape-aware weights it is {_percent(then)}" if then <= now / 2 else ""
-
-
-def _advice(kind: Kind, sentence: str, names: tuple[str, ...], near: list[int], where: Array, amount: float) -> Advice:
-    return Advice(kind, sentence, tuple(where.tolist()), tuple(names[i] for i in near), float(amount))
-
-
-def _at(place: Array) -> str:
-    return "(" + ", ".join(f"{value:.4g}" for value in place) + ")"
-
-
-def _percent(part: float) -> str:
-    return f"{100 * part:.2g} %"
+    sizes = np.abs(np.linalg.det(scaled)) ** (1 / dimension)
+    return [
+        None if np.isnan(size) else Orientation.of(np.ascontiguousarray(matrix / size), size)
+        for matrix, size in zip(scaled, sizes, strict=True)
+    ]

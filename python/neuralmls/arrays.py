@@ -97,23 +97,8 @@ def as_count(name: str, value: int, low: int, high: int) -> int:
     return count
 
 
-def box_around(points: NDArray[np.float64]) -> tuple[list[float], float]:
-    """Return centre and half of the longest side of the box of points (n, d); a half of 1 where all are in one place.
-
-    Raises
-    ------
-    ArgumentError
-        There are no points.
-    """
-    if len(points) == 0:
-        raise ArgumentError("control_points: expected at least one, found none")
-    if (points == points[0]).all():
-        return points[0].tolist(), 1.0
-    return as_box(np.stack([points.min(axis=0), points.max(axis=0)]), points.shape[1])
-
-
-def as_box(bounds: ArrayLike, dimension: int) -> tuple[list[float], float]:
-    """Return centre and half of the longest side of a box (2, d): least and greatest corner.
+def as_box(bounds: ArrayLike, dimension: int) -> NDArray[np.float64]:
+    """Return a box (2, d): least and greatest corner.
 
     Raises
     ------
@@ -123,7 +108,11 @@ def as_box(bounds: ArrayLike, dimension: int) -> tuple[list[float], float]:
     box = as_points("bounds", bounds, dimension)
     if len(box) != 2 or (box[0] > box[1]).any():
         raise ArgumentError("bounds: expected two rows, the least and the greatest corner of the shape's box")
-    half = float((box[1] - box[0]).max()) / 2
-    if half == 0:
+    if (box[0] == box[1]).all():
         raise ArgumentError("bounds: all points are in one place, so that there is no size to measure by")
-    return (box[0] + (box[1] - box[0]) / 2).tolist(), half
+    return box
+
+
+def box_around(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the box of points (n, d), at least one: least and greatest corner, (2, d)."""
+    return np.stack([points.min(axis=0), points.max(axis=0)])

@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from neuralmls import _core
 from neuralmls.arrays import Progress, as_number, as_points
 from neuralmls.errors import ArgumentError
-from neuralmls.exact import ExactHandles
+from neuralmls.handles import ExactHandles, Transform
+from neuralmls.orientations import Rotations, Scales, as_orientations
 from neuralmls.point_tree import PointTree
-from neuralmls.protocol import Transform, Weights
-from neuralmls.turns import Rotations, Scales, as_turns
+from neuralmls.weights import HasLogits, Weights
 
 Floats: TypeAlias = NDArray[np.floating]
 
@@ -58,7 +58,7 @@ class Deformer:
     def __init__(
         self,
         x: ArrayLike,
-        weights: Weights,
+        weights: Weights | HasLogits,
         *,
         transform: Transform = "rigid",
         progress: Progress | None = None,
@@ -77,16 +77,14 @@ class Deformer:
         self._weights, self._transform = weights, transform
         self._p = p
         self._count = len(points)
-        bind = getattr(weights, "_bind", None)
-        if bind:
-            self._core = bind(x, points, transform, progress)
+        if isinstance(weights, Weights):
+            tree = x._core if isinstance(x, PointTree) else None
+            self._core = _core.Deformer(points, weights._core, tree, transform, progress)
             return
-        logits = np.ascontiguousarray(
-            weights.logits(x if isinstance(x, PointTree) else points, progress=progress), dtype=np.float32
-        )
+        logits = np.ascontiguousarray(weights.logits(points, progress=progress), dtype=np.float32)
         if logits.shape != (len(points), len(p)):
             raise ArgumentError(f"logits: expected shape {(len(points), len(p))}, found {logits.shape}")
-        self._core = _core.Deformer(points, p, logits, transform)
+        self._core = _core.Deformer.of_logits(points, p, logits, transform)
 
     @cached_property
     def _handles(self) -> ExactHandles:
@@ -123,7 +121,7 @@ class Deformer:
         *,
         rotations: Rotations = ...,
         scales: Scales = ...,
-        adherence: float = ...,
+        adherence: ArrayLike = ...,
         return_maps: Literal[False] = ...,
         out: NDArray[np.float64] | None = ...,
         progress: Progress | None = ...,
@@ -137,7 +135,7 @@ class Deformer:
         *,
         rotations: Rotations = ...,
         scales: Scales = ...,
-        adherence: float = ...,
+        adherence: ArrayLike = ...,
         return_maps: Literal[True],
         out: NDArray[np.float64] | None = ...,
         progress: Progress | None = ...,
@@ -150,7 +148,7 @@ class Deformer:
         *,
         rotations: Rotations = None,
         scales: Scales = None,
-        adherence: float = 0.0,
+        adherence: ArrayLike = 0.0,
         return_maps: bool = False,
         out: NDArray[np.float64] | None = None,
         progress: Progress | None = None,
@@ -169,7 +167,7 @@ class Deformer:
         scales : (m,), optional
             How much larger the surroundings of control points become, above 0, or None (or NaN); a control point with a
             scale and no rotation is held unturned. Rigid deformations leave scales away.
-        adherence : float, 0 to 1
+        adherence : float, 0 to 1, or (m,)
             0: plain moving least squares, which takes the control points near their targets; 1: they arrive, see
             `ExactHandles`.
         return_maps : bool
@@ -202,9 +200,9 @@ class Deformer:
             and out.flags.writeable
         ):
             raise ArgumentError(f"out: expected a writeable C-contiguous float64 array {(self._count, q.shape[1])}")
-        if adherence != 0:
+        if np.any(np.not_equal(adherence, 0)):
             q = self._handles.aim(q, t, adherence, rotations=rotations, scales=scales).targets
-        turns = as_turns(rotations, scales, *q.shape)
-        positions, maps = self._core.deform(q, turns, t, return_maps, out, progress)
+        orientations = as_orientations(rotations, scales, *q.shape)
+        positions, maps = self._core.deform(q, orientations, t, return_maps, out, progress)
         y: Floats = positions if out is not None else positions.astype(self._dtype, copy=False)
         return (y, maps) if maps is not None else y

@@ -1,20 +1,18 @@
-"""The pipeline: control points -> fit -> logits -> softmax(T) -> MLS. The one place where its steps meet."""
+"""The whole way in one call: points, control points, targets -> positions."""
 
 from __future__ import annotations
-
-from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from neuralmls.arrays import as_points
+from neuralmls.advice import fitted
+from neuralmls.arrays import as_points, box_around
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ArgumentError
-from neuralmls.protocol import Transform
-from neuralmls.turns import Rotations, Scales
-from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
-
-WeightsName: TypeAlias = Literal["neural", "shape-aware", "inverse-distance"]
+from neuralmls.handles import ExactHandles, Transform
+from neuralmls.orientations import Rotations, Scales
+from neuralmls.session import Handles, WeightsName
+from neuralmls.weights import HasLogits, InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
 
 
 def deform(
@@ -24,16 +22,16 @@ def deform(
     *,
     rotations: Rotations = None,
     scales: Scales = None,
-    weights: WeightsName | Weights = "neural",
+    weights: WeightsName | Weights | HasLogits = "neural",
     faces: ArrayLike | None = None,
     transform: Transform = "rigid",
     temperature: float = 1.0,
-    exact: bool = False,
+    handles: Handles = "auto",
     seed: int = 0,
 ) -> Floats:
-    """Deform the points `x` so that the control points `p` move to `q`, in one call.
+    """Deform the points `x` so that the control points `p` move to `q`: what `neuralmls deform` does, in one call.
 
-    To move them again and again, bind once: `Deformer(x, NeuralWeights.fit(p, bounds=...)).deform(q)`.
+    To move them again and again, fit once: `Session(ControlPoints(p)).fit(x)`, or bind once: `Deformer`.
 
     Parameters
     ----------
@@ -49,8 +47,9 @@ def deform(
         Triangles of the points, for shape-aware weights; without them the points are a cloud.
     transform : "rigid", "similarity" or "affine"
     temperature : float > 0
-    exact : bool
-        Whether the control points go all the way to their targets (see `ExactHandles`), not only near them.
+    handles : "auto", "exact", "soft", or a number from 0 to 1
+        How closely the control points arrive at their targets (see `Session`). "soft" is the paper's way, in which they
+        stop near them.
     seed : int
         Of the network's training (neural and shape-aware weights).
 
@@ -58,6 +57,7 @@ def deform(
     -------
     (n, d), float32 if `x` was, else float64
 
+'''
     Raises
     ------
     ArgumentError
@@ -77,13 +77,14 @@ def deform(
             f"q: expected one target for each of at least one control point, found {len(targets)} for {len(sources)}"
         )
     points = as_points("x", x, sources.shape[1])
-    function: Weights
+    box = box_around(points) if len(points) and (points != points[0]).any() else None
+    function: Weights | HasLogits
     if isinstance(weights, str) and weights == "neural":
-        function = NeuralWeights.fit(sources, bounds=_bounds(points), seed=seed)
+        function = NeuralWeights.fit(sources, bounds=box, seed=seed)
     elif isinstance(weights, str) and weights == "shape-aware":
         function = ShapeAwareWeights.fit(sources, points, faces, seed=seed)
     elif isinstance(weights, str) and weights == "inverse-distance":
-        function = InverseDistanceWeights(sources, bounds=_bounds(points))
+        function = InverseDistanceWeights(sources, bounds=box)
     elif isinstance(weights, str) or not hasattr(weights, "control_points"):
         raise ArgumentError(
             f"weights: expected 'neural', 'shape-aware', 'inverse-distance' or a weight function, found {weights!r}"
@@ -92,12 +93,21 @@ def deform(
         function = weights
         if not np.array_equal(as_points("weights.control_points", function.control_points), sources):
             raise ArgumentError("weights: expected a weight function of the control points p, found one of others")
+    if isinstance(function, Weights):
+        map = fitted(
+            function,
+            targets,
+            transform=transform,
+            temperature=temperature,
+            handles=handles,
+            rotations=rotations,
+            scales=scales,
+        )
+        return map.at(x)
+    # Logits of someone's own: the same steps, of which a map would keep the weights.
+    solver = ExactHandles(function, transform=transform)
+    share = {"auto": 1.0, "exact": 1.0, "soft": 0.0}.get(handles, handles) if isinstance(handles, str) else handles
+    solve = solver.aim if handles == "exact" else solver.aim_carefully
+    aim = solve(targets, temperature, share, rotations=rotations, scales=scales)
     deformer = Deformer(x, function, transform=transform)
-    return deformer.deform(targets, temperature, rotations=rotations, scales=scales, adherence=float(bool(exact)))
-
-
-def _bounds(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> ArrayLike | None:
-    """The points' box, or None where it has no size (the weights then measure by something else)."""
-    if len(points) == 0 or (points == points[0]).all():
-        return None
-    return np.stack([points.min(axis=0), points.max(axis=0)])
+    return deformer.deform(aim.targets, temperature, rotations=rotations, scales=scales)

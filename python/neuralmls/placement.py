@@ -50,7 +50,7 @@ def farthest_points(positions: ArrayLike, faces: ArrayLike | None, count: int, *
     if not len(x):
         raise ArgumentError("positions: expected at least one point, found none")
     number, start = as_count("count", count, 1, MOST), as_count("seed", seed, 0, SEEDS)
-    return _core.farthest_points(x, _indices(faces, len(x)), number, start)
+    return _core.farthest_points(x, as_indices(faces, len(x)), number, start)
 
 
 def farthest_of(candidates: ArrayLike, count: int) -> NDArray[np.int64]:
@@ -93,10 +93,10 @@ def sample_surface(positions: ArrayLike, faces: ArrayLike, count: int, *, seed: 
     """
     x = as_points("positions", positions)
     number, start = as_count("count", count, 0, MOST), as_count("seed", seed, 0, SEEDS)
-    return _core.sample_surface(x, _indices(faces, len(x)), number, start)
+    return _core.sample_surface(x, as_indices(faces, len(x)), number, start)
 
 
-def _indices(faces: ArrayLike | None, count: int) -> NDArray[np.uint32]:
+def as_indices(faces: ArrayLike | None, count: int) -> NDArray[np.uint32]:
     """Triangles as the core takes them, none for a cloud."""
     if faces is None or not np.size(faces):
         return np.empty((0, 3), dtype=np.uint32)

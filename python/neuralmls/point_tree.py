@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from neuralmls import _core
-from neuralmls.arrays import Progress, as_box, as_points
+from neuralmls.arrays import Progress, as_box, as_points, box_around
 from neuralmls.errors import ArgumentError
 
 
@@ -44,14 +44,10 @@ class PointTree:
 
     def __init__(self, x: ArrayLike, *, bounds: ArrayLike | None = None, progress: Progress | None = None) -> None:
         self._points = as_points("x", x)
-        dimension = self._points.shape[1]
-        if bounds is None:
-            if not len(self._points):
-                raise ArgumentError("x: expected at least one point where no bounds are given")
-            bounds = np.stack([self._points.min(axis=0), self._points.max(axis=0)])
-        centre, half = as_box(bounds, dimension)
-        self._bounds = as_points("bounds", bounds, dimension)
-        self._core = _core.PointTree(self._points, centre, half, progress)
+        if bounds is None and not len(self._points):
+            raise ArgumentError("x: expected at least one point where no bounds are given")
+        self._bounds = as_box(box_around(self._points) if bounds is None else bounds, self._points.shape[1])
+        self._core = _core.PointTree(self._points, self._bounds, progress)
 
     @property
     def bounds(self) -> NDArray[np.float64]:

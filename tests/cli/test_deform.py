@@ -37,7 +37,7 @@ def test_only_positions_change(run, here):
 
 @pytest.mark.parametrize("transform", ["rigid", "similarity", "affine"])
 @pytest.mark.parametrize("kind", ["neural", "inverse-distance"])
-@pytest.mark.parametrize("handles", [(), ("--exact",), ("--no-exact",)])
+@pytest.mark.parametrize("handles", [(), ("--handles", "exact",), ("--handles", "soft",)])
 def test_positions_are_those_of_the_package(run, here, kind, transform, handles):
     options = ("--weights", kind, *(QUICK if kind == "neural" else ("--alpha", "0.75", "--epsilon", "0.01")))
     moves = ("--move", "top=0.25,1,0", "--move", "side=0,0,-0.5")
@@ -50,7 +50,7 @@ def test_positions_are_those_of_the_package(run, here, kind, transform, handles)
     else:
         weights = nm.InverseDistanceWeights(points.sources, bounds=shape.bounds, alpha=0.75, epsilon=0.01)
     exact = nm.ExactHandles(weights, transform=transform)
-    aim = (exact.aim if handles else exact.aim_carefully)(points.targets, 0.8, float(handles != ("--no-exact",)))
+    aim = (exact.aim if handles else exact.aim_carefully)(points.targets, 0.8, float(handles != ("--handles", "soft",)))
     expected = nm.Deformer(shape.positions, weights, transform=transform).deform(aim.targets, 0.8)
     np.testing.assert_allclose(nm.read("out.obj").positions, expected, rtol=0, atol=1e-6)
 
@@ -68,16 +68,16 @@ def test_moves_add_to_the_targets_of_the_file(run, here):
 def test_turns_are_those_of_the_package(run, here, axis, vector):
     turn = ("--turn", f"top={axis},70")
     ran = run(*DEFORM, "-o", "out.obj", *CLASSIC, *turn, "--move", "top=0.25,1,0", "--json")
-    points = nm.ControlPoints.read("points.csv").moved({"top": [0.25, 1, 0]}).turned({"top": nm.Turn(vector, 70)})
+    points = nm.ControlPoints.read("points.csv").moved({"top": [0.25, 1, 0]}).oriented({"top": nm.Orientation(vector, 70)})
     shape = nm.read("shape.obj")
     deformer = nm.Deformer(shape.positions, nm.InverseDistanceWeights(points.sources, bounds=shape.bounds))
     expected = deformer.deform(points.targets, rotations=points.rotations)
     assert np.abs(expected - deformer.deform(points.targets)).max() > 0.1
     np.testing.assert_allclose(nm.read("out.obj").positions, expected, rtol=0, atol=1e-6)
     told = {point["name"]: point for point in json.loads(ran.out)["control_points"]}
-    assert told["top"]["turned"] == 70
+    assert told["top"]["oriented"] == 70
     assert told["top"]["degrees_to_rotation"] < 1e-3  # classic weights: its own place is all its own
-    assert "turned" not in told["foot"]
+    assert "oriented" not in told["foot"]
 
 
 def test_a_turn_is_seen_in_the_summary_and_moves_what_nothing_else_moves(run, here):
@@ -95,7 +95,7 @@ def test_turns_by_nothing_return_the_very_bytes(run, here):
 
 
 def test_a_turn_of_the_file_is_turned_further(run, here):
-    points = nm.ControlPoints.read("points.csv").turned({"top": nm.Turn((0, 0, 1), 50)})
+    points = nm.ControlPoints.read("points.csv").oriented({"top": nm.Orientation((0, 0, 1), 50)})
     points.write("turned.json")
     assert (
         run("deform", "shape.obj", "--points", "turned.json", "-o", "a.obj", *CLASSIC, "--turn", "top=z,-20").code == 0
@@ -150,7 +150,7 @@ def test_distances_to_targets_are_where_the_control_points_arrive(run):
     """Classic weights meet every target; a network after few steps does not, and is said not to."""
     exact = json.loads(run(*DEFORM, "-o", "a.obj", *CLASSIC, "--move", "top=0,1,0", "--json").out)
     assert max(point["distance_to_target"] for point in exact["control_points"]) < 1e-6
-    short = json.loads(run(*DEFORM, "-o", "b.obj", "--steps", "1", "--no-exact", "--move", "top=0,1,0", "--json").out)
+    short = json.loads(run(*DEFORM, "-o", "b.obj", "--steps", "1", "--handles", "soft", "--move", "top=0,1,0", "--json").out)
     points = nm.ControlPoints.read("points.csv").moved({"top": [0, 1, 0]})
     weights = nm.NeuralWeights.fit(points.sources, bounds=nm.read("shape.obj").bounds, steps=1)
     arrived = nm.Deformer(points.sources, weights).deform(points.targets)
@@ -279,11 +279,11 @@ def test_real_shapes_from_placement_to_result(run, data, name):
 
 def test_control_points_arrive_unless_they_are_to_be_soft(run, here):
     moved = (*DEFORM, "--width", "128", "--move", "top=0,0.5,0.2")
-    soft = json.loads(run(*moved, "-o", "soft.obj", "--json", "--no-exact").out)
+    soft = json.loads(run(*moved, "-o", "soft.obj", "--json", "--handles", "soft").out)
     ran = run(*moved, "-o", "plain.obj", "--json")
     assert ran.err == ""
     plain = json.loads(ran.out)
-    said = run(*moved, "-o", "exact.obj", "--exact").out
+    said = run(*moved, "-o", "exact.obj", "--handles", "exact").out
     assert [(told["adherence"], told["kept_soft"]) for told in (soft, plain)] == [(0.0, None), (1.0, None)]
     assert max(point["distance_to_target"] for point in soft["control_points"]) > 0.01
     assert max(point["distance_to_target"] for point in plain["control_points"]) < 1e-6
@@ -295,7 +295,7 @@ def test_control_points_arrive_unless_they_are_to_be_soft(run, here):
 def test_control_points_that_own_little_are_left_soft_with_what_would_help(run, here):
     (here / "six.csv").write_text(SIX)
     moved = ("deform", "shape.obj", "--points", "six.csv", "--width", "128", "--move", "top=0,0.5,0.2", "--temperature")
-    soft = run(*moved, "30", "-o", "soft.obj", "--no-exact")
+    soft = run(*moved, "30", "-o", "soft.obj", "--handles", "soft")
     ran = run(*moved, "30", "-o", "plain.obj")
     assert (ran.code, ran.err) == (0, "")
     assert (here / "plain.obj").read_bytes() == (here / "soft.obj").read_bytes()
@@ -316,7 +316,7 @@ def test_control_points_that_own_little_are_left_soft_with_what_would_help(run, 
 def test_control_points_that_cannot_arrive_go_as_far_as_they_can(run, here):
     (here / "six.csv").write_text(SIX)
     moved = ("deform", "shape.obj", "--points", "six.csv", "--width", "128", "--move", "a=0,3,0", "--json")
-    soft = json.loads(run(*moved, "--temperature", "2", "-o", "soft.obj", "--no-exact").out)
+    soft = json.loads(run(*moved, "--temperature", "2", "-o", "soft.obj", "--handles", "soft").out)
     ran = run(*moved, "--temperature", "2", "-o", "far.obj")
     told = json.loads(ran.out)
     assert (told["adherence"], told["kept_soft"]) == (1.0, None)
@@ -333,13 +333,13 @@ def test_exact_control_points_that_cannot_arrive_are_named(run, here):
         "name,x,y,z,target_x,target_y,target_z\na,0,0,0,0,0,0\nb,0.01,0,0,3,0,0\nc,0,2,0,0,2,0\nd,1,2,1.5,1,2,1.5\n"
     )
     torn = ("deform", "shape.obj", "--points", "torn.csv", *QUICK)
-    ran = run(*torn, "-o", "out.obj", "--exact")
+    ran = run(*torn, "-o", "out.obj", "--handles", "exact")
     assert ran.code == 0
     assert "control points do not arrive exactly: 'b' by" in ran.err or "'a' by" in ran.err
     assert "--transform affine" in ran.err
     # Unless one insists they are left soft.
     assert json.loads(run(*torn, "-o", "plain.obj", "--json").out)["adherence"] == 0
-    assert run(*torn, "-o", "soft.obj", "--no-exact").err == ""
+    assert run(*torn, "-o", "soft.obj", "--handles", "soft").err == ""
     assert (here / "plain.obj").read_bytes() == (here / "soft.obj").read_bytes()
     assert (here / "plain.obj").read_bytes() != (here / "out.obj").read_bytes()
 
@@ -370,7 +370,7 @@ def test_check_tells_once_of_exact_control_points_that_cannot_arrive(run, here):
     (here / "torn.csv").write_text(
         "name,x,y,z,target_x,target_y,target_z\na,0,0,0,0,0,0\nb,0.01,0,0,3,0,0\nc,0,2,0,0,2,0\nd,1,2,1.5,1,2,1.5\n"
     )
-    ran = run("deform", "shape.obj", "--points", "torn.csv", "-o", "out.obj", *QUICK, "--exact", "--check")
+    ran = run("deform", "shape.obj", "--points", "torn.csv", "-o", "out.obj", *QUICK, "--handles", "exact", "--check")
     assert ran.code == 0
     assert "stop short of their targets, at adherence 1: " in ran.err
     assert "do not arrive exactly" not in ran.err

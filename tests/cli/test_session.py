@@ -55,11 +55,11 @@ def test_what_is_set_in_the_editor_holds(run, session):
 
 
 def test_options_go_before_it(run, session):
-    options = ("--no-exact", "--transform", "rigid", "--temperature", "1.0")  # a default, but said
+    options = ("--handles", "soft", "--transform", "rigid", "--temperature", "1.0")  # a default, but said
     told = json.loads(run(*DEFORM, "-o", "out.obj", "--json", *options).out)
     assert (told["adherence"], told["transform"], told["temperature"]) == (0.0, "rigid", 1.0)
     np.testing.assert_allclose(nm.read("out.obj").positions, expected(0.0, "rigid", 1.0), rtol=0, atol=1e-6)
-    told = json.loads(run(*DEFORM, "-o", "exact.obj", "--json", "--exact", "--seed", "4").out)
+    told = json.loads(run(*DEFORM, "-o", "exact.obj", "--json", "--handles", "exact", "--seed", "4").out)
     assert (told["adherence"], told["weights"]["seed"]) == (1.0, 4)
 
 

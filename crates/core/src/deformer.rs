@@ -1,13 +1,14 @@
 //! The pipeline: logits -> softmax(T) -> MLS, for points that are bound once and deformed many times.
 
 use crate::error::{check_points, Error};
-use crate::frame::Frame;
-use crate::mls::lanes::{BatchPoints, LaneHandles, Scratch, BATCH};
-use crate::mls::{check_turns, turned, Handles, Transform};
-use crate::parallel::{any, for_each_at_once};
-use crate::progress::{report, Progress};
-use crate::simd::prefetch;
+use crate::geometry::{Frame, PointTree};
+use crate::machine::parallel::{any, for_each_at_once};
+use crate::machine::progress::{report, Progress};
+use crate::machine::simd::prefetch;
+use crate::mls::batch::{BatchMls, BatchPoints, Scratch, BATCH};
+use crate::mls::{check_orientations, oriented, Global, Mls, Transform};
 use crate::softmax::{check_temperature, relative_weights, PackedWeights};
+use crate::weights::Weights;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Points between two reports of progress.
@@ -18,11 +19,10 @@ const BLOCK: usize = 2048;
 /// Points bound to the logits that a weight function gave for them. Dragging changes the targets alone.
 ///
 /// ```
-/// use neuralmls_core::{Deformer, Frame, InverseDistance, Transform};
-/// let (x, p) = ([0.0, 1.0, 2.0], [0.0, 2.0]);
-/// let weights = InverseDistance::new(&p, 1, Frame::IDENTITY, 1.0, 0.0).unwrap();
-/// let logits = weights.logits(&x, &mut |_| true).unwrap();
-/// let deformer = Deformer::new(x.to_vec(), 1, &p, logits, Transform::Rigid).unwrap();
+/// use neuralmls_core::{Deformer, Frame, InverseDistance, Transform, Weights};
+/// let weights = InverseDistance::new(&[0.0, 2.0], 1, Frame::IDENTITY, 1.0, 0.0).unwrap();
+/// let weights = Weights::InverseDistance(weights);
+/// let deformer = Deformer::new(vec![0.0, 1.0, 2.0], &weights, None, Transform::Rigid, &mut |_| true).unwrap();
 /// let moved = deformer.deform(&[1.0, 3.0], 1.0, false, &mut |_| true).unwrap();
 /// assert_eq!(moved.positions, [1.0, 2.0, 3.0]);
 /// ```
@@ -33,7 +33,7 @@ pub struct Deformer {
     p: Vec<f64>,
     logits: Vec<f32>,
     transform: Transform,
-    /// See [`Handles::undecided`].
+    /// See [`Mls::undecided`].
     undecided: f64,
     /// The weights of the last frame.
     last: Mutex<Option<Arc<PackedWeights>>>,
@@ -44,14 +44,14 @@ pub struct Deformer {
 pub struct Pose<'a> {
     /// Where they go, m x dim.
     pub q: &'a [f64],
-    /// How they turn, m x dim x dim, row-major: of each a rotation times a scale above 0, `s_i R_i`, or NaN throughout for one that says
+    /// How they are oriented, m x dim x dim, row-major: of each a rotation times a scale above 0, `s_i R_i`, or NaN throughout for one that says
     /// nothing; none where none of them does. Rigid maps leave the scale away.
-    pub turns: Option<&'a [f64]>,
+    pub orientations: Option<&'a [f64]>,
 }
 
 impl<'a, Q: AsRef<[f64]> + ?Sized> From<&'a Q> for Pose<'a> {
     fn from(q: &'a Q) -> Self {
-        Pose { q: q.as_ref(), turns: None }
+        Pose { q: q.as_ref(), orientations: None }
     }
 }
 
@@ -64,11 +64,31 @@ pub struct Deformed {
 }
 
 impl Deformer {
+    /// Binds the points `x` (n x dim) to the control points of `weights`; with a tree of the same points, where there is one, in which networks
+    /// are evaluated sooner.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`]; where a coordinate is not finite, or the tree does not fit.
+    pub fn new(
+        x: Vec<f64>,
+        weights: &Weights,
+        tree: Option<&PointTree>,
+        transform: Transform,
+        progress: &mut Progress<'_>,
+    ) -> Result<Deformer, Error> {
+        let logits = match (weights, tree) {
+            // From the points themselves, which the tree has in single precision.
+            (Weights::InverseDistance(_), _) | (_, None) => weights.logits(&x, progress)?,
+            (_, Some(tree)) => weights.logits_of_tree(tree, progress)?,
+        };
+        Deformer::of_logits(x, weights.dim(), weights.control_points(), logits, transform)
+    }
+
     /// Binds the points `x` (n x dim) to the control points `p` (m x dim) by `logits` (n x m).
     ///
     /// # Errors
     /// Where a size does not fit another, a coordinate is not finite, or a logit is NaN.
-    pub fn new(
+    pub fn of_logits(
         x: Vec<f64>,
         dim: usize,
         p: &[f64],
@@ -101,7 +121,7 @@ impl Deformer {
         })
     }
 
-    /// Lets it move points as [`Handles::undecided`] says.
+    /// Lets it move points as [`Mls::undecided`] says.
     pub(crate) fn undecided(self, part: f64) -> Deformer {
         Deformer { undecided: part, ..self }
     }
@@ -109,6 +129,11 @@ impl Deformer {
     /// Points, n.
     pub fn len(&self) -> usize {
         self.x.len() / self.dim
+    }
+
+    /// The points, n x dim.
+    pub fn points(&self) -> &[f64] {
+        &self.x
     }
 
     /// What the points are bound by, n x m.
@@ -126,14 +151,14 @@ impl Deformer {
         self.x.is_empty()
     }
 
-    /// Where the points go when the control points go to the targets of `pose` (m x dim numbers, or with turns a [`Pose`]), with
-    /// the weights at `temperature` > 0; with the local maps if `maps`. If every target is its control point, and no turn anything but the
+    /// Where the points go when the control points go to the targets of `pose` (m x dim numbers, or with orientations a [`Pose`]), with
+    /// the weights at `temperature` > 0; with the local maps if `maps`. If every target is its control point, and no orientation anything but the
     /// identity, the positions are the input bit for bit.
     ///
     /// The first frame at a temperature computes the weights; the next ones find them.
     ///
     /// # Errors
-    /// [`Error::Cancelled`]; where the pose does not fit, is not finite, a turn is none, or the temperature is not above 0.
+    /// [`Error::Cancelled`]; where the pose does not fit, is not finite, an orientation is none, or the temperature is not above 0.
     pub fn deform<'a>(
         &self,
         pose: impl Into<Pose<'a>>,
@@ -160,14 +185,8 @@ impl Deformer {
         progress: &mut Progress<'_>,
     ) -> Result<(), Error> {
         let pose = pose.into();
-        let q = pose.q;
-        check_points("q", q, self.dim)?;
         check_temperature(temperature)?;
-        if q.len() != self.p.len() {
-            let (found, expected) = (q.len() / self.dim, self.p.len() / self.dim);
-            return Err(Error::argument("q", format!("expected {expected} targets, found {found}")));
-        }
-        let still = pose.turns.map_or(Ok(true), |turns| check_turns(turns, q.len() / self.dim, self.dim))?;
+        let unmoved = self.check(pose)?;
         let room = |name, found: usize, expected: usize| {
             let message = || format!("expected room for {expected} numbers, found {found}");
             if found == expected {
@@ -180,7 +199,6 @@ impl Deformer {
         if let Some(maps) = &maps {
             room("maps", maps.len(), self.x.len() * self.dim)?;
         }
-        let unmoved = still && q == self.p;
         if !unmoved || maps.is_some() {
             match self.dim {
                 1 => self.deform_in::<1>(pose, temperature, y, maps, progress)?,
@@ -194,6 +212,51 @@ impl Deformer {
         report(progress, 1.0)
     }
 
+    /// Checks that a pose fits; gives whether it leaves everything where it is.
+    fn check(&self, pose: Pose<'_>) -> Result<bool, Error> {
+        let Pose { q, orientations } = pose;
+        check_points("q", q, self.dim)?;
+        if q.len() != self.p.len() {
+            let (found, expected) = (q.len() / self.dim, self.p.len() / self.dim);
+            return Err(Error::argument("q", format!("expected {expected} targets, found {found}")));
+        }
+        let check = |given| check_orientations(given, q.len() / self.dim, self.dim);
+        Ok(orientations.map_or(Ok(true), check)? && q == self.p)
+    }
+
+    /// The map of its kind that fits all control points with equal weights: its rotation (row-major), scale and linear map (row-major).
+    pub(crate) fn global(&self, pose: Pose<'_>) -> Result<(Vec<f64>, f64, Vec<f64>), Error> {
+        self.check(pose)?;
+        Ok(match self.dim {
+            1 => self.global_in::<1>(pose),
+            2 => self.global_in::<2>(pose),
+            _ => self.global_in::<3>(pose),
+        })
+    }
+
+    fn global_in<const D: usize>(&self, pose: Pose<'_>) -> (Vec<f64>, f64, Vec<f64>) {
+        let (p, q) = (self.entered::<D>(&self.p), self.entered(pose.q));
+        let mls = self.mls(&p, &q, pose.orientations);
+        let Global { rotation, scale, linear } = mls.global();
+        (rotation.as_flattened().to_vec(), *scale, linear.as_flattened().to_vec())
+    }
+
+    /// Points of the world in the frame.
+    fn entered<const D: usize>(&self, points: &[f64]) -> Vec<[f64; D]> {
+        points.chunks_exact(D).map(|point| self.frame.enter(point)).collect()
+    }
+
+    /// The map of control points in the frame.
+    fn mls<'a, const D: usize>(
+        &self,
+        p: &'a [[f64; D]],
+        q: &'a [[f64; D]],
+        orientations: Option<&[f64]>,
+    ) -> Mls<'a, D> {
+        let oriented = orientations.map_or_else(Vec::new, |given| oriented(given, p));
+        Mls::with_oriented(p, q, oriented, self.transform).undecided(self.undecided)
+    }
+
     fn deform_in<const D: usize>(
         &self,
         pose: Pose<'_>,
@@ -202,15 +265,10 @@ impl Deformer {
         maps: Option<&mut [f64]>,
         progress: &mut Progress<'_>,
     ) -> Result<(), Error> {
-        let enter = |points: &[f64]| -> Vec<[f64; D]> {
-            points.chunks_exact(D).map(|point| self.frame.enter(point)).collect()
-        };
-        let (p, q) = (enter(&self.p), enter(pose.q));
-        let turned = pose.turns.map_or_else(Vec::new, |turns| turned(turns, &p));
-        let handles = Handles::with_turned(&p, &q, turned, self.transform).undecided(self.undecided);
-        let lanes = handles.lanes(self.frame).map(|lanes| (lanes, self.weights(temperature)));
-        let motion =
-            Motion { x: &self.x, logits: &self.logits, frame: self.frame, temperature, handles, lanes };
+        let (p, q) = (self.entered::<D>(&self.p), self.entered::<D>(pose.q));
+        let mls = self.mls(&p, &q, pose.orientations);
+        let batch = mls.batch(self.frame).map(|batch| (batch, self.weights(temperature)));
+        let motion = Motion { x: &self.x, logits: &self.logits, frame: self.frame, temperature, mls, batch };
         let mut maps = maps.unwrap_or_default();
         for (chunk, y) in y.chunks_mut(CHUNK * D).enumerate() {
             let (first, count) = (CHUNK * chunk, y.len() / D);
@@ -266,16 +324,16 @@ struct Motion<'a, const D: usize> {
     logits: &'a [f32],
     frame: Frame,
     temperature: f64,
-    handles: Handles<'a, D>,
+    mls: Mls<'a, D>,
     /// The kernel that takes many points at a time, where there is one, and its weights.
-    lanes: Option<(LaneHandles, Arc<PackedWeights>)>,
+    batch: Option<(BatchMls, Arc<PackedWeights>)>,
 }
 
 impl<const D: usize> Motion<'_, D> {
     /// Moves the points from `first` (a multiple of [`BLOCK`]) on into `y`; their maps into `maps` unless it is empty.
     fn block(&self, first: usize, y: &mut [f64], maps: &mut [f64]) {
         let n = y.len() / D;
-        let Some((lanes, weights)) = &self.lanes else {
+        let Some((batch, weights)) = &self.batch else {
             return self.one_by_one(first, 0..n, y, maps);
         };
         let (mut scratch, mut unsound) = (Scratch::new(), Vec::new());
@@ -289,7 +347,7 @@ impl<const D: usize> Motion<'_, D> {
             let x = &self.x[(first + at) * D..(first + end) * D];
             let maps = if maps.is_empty() { &mut [] } else { &mut maps[at * D * D..end * D * D] };
             let points = BatchPoints { x, y: &mut y[at * D..end * D], maps };
-            lanes.deform(weights.blocks(first + at), points, &mut scratch);
+            batch.deform(weights.blocks(first + at), points, &mut scratch);
             unsound.extend(scratch.unsound(end - at).map(|lane| at + lane));
         }
         self.one_by_one(first, unsound.into_iter(), y, maps);
@@ -304,7 +362,7 @@ impl<const D: usize> Motion<'_, D> {
             let logits = &self.logits[m * index..m * (index + 1)];
             let dominant = relative_weights(logits, self.temperature, &mut relative);
             let x = &self.x[D * index..D * (index + 1)];
-            let local = self.handles.deform(&self.frame.enter(x), &relative, dominant);
+            let local = self.mls.deform(&self.frame.enter(x), &relative, dominant);
             for (k, d) in local.displacement.into_iter().enumerate() {
                 y[D * i + k] = x[k] + self.frame.half * d;
             }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::parallel::any;
+use crate::machine::parallel::any;
 
 /// What can go wrong; each says it in one sentence.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,6 +16,8 @@ pub enum Error {
     },
     /// The caller's progress function asked to stop.
     Cancelled,
+    /// What grows with the number of points does not fit into memory.
+    Memory,
 }
 
 impl Error {
@@ -29,6 +31,7 @@ impl fmt::Display for Error {
         match self {
             Error::Argument { name, message } => write!(f, "{name}: {message}"),
             Error::Cancelled => f.write_str("cancelled"),
+            Error::Memory => f.write_str("there is not enough memory for this"),
         }
     }
 }

@@ -5,83 +5,77 @@ use neuralmls_core::{Pose, Transform};
 use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
+use crate::arrays::table;
 use crate::errors::{argument, from_core};
 use crate::progress::run;
-use crate::weights::{Network, PointTree};
+use crate::weights::{PointTree, Weights};
 
 /// Deforms bound points.
 #[pyclass(frozen)]
 pub(crate) struct Deformer {
-    inner: neuralmls_core::Deformer,
+    pub inner: neuralmls_core::Deformer,
     dim: usize,
 }
 
 /// Positions n x d, and the maps n x d x d where they were asked for.
 type Deformed<'py> = (Bound<'py, PyArray2<f64>>, Option<Bound<'py, PyArray3<f64>>>);
 
-/// Targets, and turns where there are any, as the core takes them.
+/// Targets, and orientations where there are any, as the core takes them.
 pub(crate) fn pose<'a>(
     q: &'a PyReadonlyArray2<'_, f64>,
-    turns: Option<&'a PyReadonlyArray3<'_, f64>>,
+    orientations: Option<&'a PyReadonlyArray3<'_, f64>>,
 ) -> PyResult<Pose<'a>> {
-    let turns = turns.map(|turns| turns.as_slice()).transpose()?;
-    Ok(Pose { q: q.as_slice()?, turns })
+    let orientations = orientations.map(|orientations| orientations.as_slice()).transpose()?;
+    Ok(Pose { q: q.as_slice()?, orientations })
 }
 
 /// A transform by its name.
 pub(crate) fn transform(name: &str) -> PyResult<Transform> {
-    match name {
-        "rigid" => Ok(Transform::Rigid),
-        "similarity" => Ok(Transform::Similarity),
-        "affine" => Ok(Transform::Affine),
-        other => {
-            let expected = "expected 'rigid', 'similarity' or 'affine'";
-            Err(argument(format!("transform: {expected}, found '{other}'")))
-        }
-    }
+    neuralmls_session::transform(name).map_err(|error| argument(error.message))
 }
 
 #[pymethods]
 impl Deformer {
+    /// Binds points by weights; with a tree of the points, where there is one.
     #[new]
     fn new(
+        py: Python<'_>,
+        x: PyReadonlyArray2<'_, f64>,
+        weights: &Weights,
+        tree: Option<&PointTree>,
+        transform: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Deformer> {
+        let (dim, x) = (x.shape()[1], x.as_slice()?);
+        Deformer::bound(py, x, dim, &weights.0, tree, self::transform(transform)?, progress)
+    }
+
+    /// Binds points by logits of any weights of the control points `p`.
+    #[staticmethod]
+    fn of_logits(
         x: PyReadonlyArray2<'_, f64>,
         p: PyReadonlyArray2<'_, f64>,
         logits: PyReadonlyArray2<'_, f32>,
         transform: &str,
     ) -> PyResult<Deformer> {
-        let dim = x.shape()[1];
-        let transform = self::transform(transform)?;
+        let (dim, transform) = (x.shape()[1], self::transform(transform)?);
         let (x, p, logits) = (x.as_slice()?, p.as_slice()?, logits.as_slice()?);
-        let (x, logits) = (copy_of(x), copy_of(logits));
-        let inner = neuralmls_core::Deformer::new(x, dim, p, logits, transform)
-            .map_err(|error| from_core(error, None))?;
-        Ok(Deformer { inner, dim })
+        let bound = || neuralmls_core::Deformer::of_logits(copy_of(x), dim, p, copy_of(logits), transform);
+        Ok(Deformer { inner: bound().map_err(|error| from_core(error, None))?, dim })
     }
 
-    /// Binds points to the logits of a network, which are not copied; with a tree of the points, where there is one.
-    #[staticmethod]
-    #[allow(clippy::too_many_arguments)]
-    fn of_network(
-        py: Python<'_>,
-        x: PyReadonlyArray2<'_, f64>,
-        p: PyReadonlyArray2<'_, f64>,
-        network: &Network,
-        tree: Option<&PointTree>,
-        transform: &str,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<Deformer> {
-        let dim = x.shape()[1];
-        let transform = self::transform(transform)?;
-        let (x, p) = (x.as_slice()?, p.as_slice()?);
-        let inner = run(py, progress, |report| {
-            let logits = match tree {
-                Some(tree) => network.0.logits_of_tree(&tree.0, report)?,
-                None => network.0.logits(x, report)?,
-            };
-            neuralmls_core::Deformer::new(copy_of(x), dim, p, logits, transform)
-        })?;
-        Ok(Deformer { inner, dim })
+    /// The points, n x d.
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        table(py, self.inner.points().to_vec(), self.dim)
+    }
+
+    /// What they are bound by, n x m.
+    #[getter]
+    fn logits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let logits = self.inner.logits().to_vec();
+        let columns = logits.len() / self.inner.len().max(1);
+        table(py, logits, columns)
     }
 
     /// Computes the weights at a temperature.
@@ -90,25 +84,56 @@ impl Deformer {
     }
 
     /// Writes the positions into `out`, n x d, or into a new array.
-    #[pyo3(signature = (q, turns, temperature, maps, out, progress))]
     #[allow(clippy::too_many_arguments)]
     fn deform<'py>(
         &self,
         py: Python<'py>,
         q: PyReadonlyArray2<'py, f64>,
-        turns: Option<PyReadonlyArray3<'py, f64>>,
+        orientations: Option<PyReadonlyArray3<'py, f64>>,
+        temperature: f64,
+        maps: bool,
+        out: Option<Bound<'py, PyArray2<f64>>>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Deformed<'py>> {
+        let pose = pose(&q, orientations.as_ref())?;
+        self.frame(py, pose, temperature, maps, out, progress)
+    }
+}
+
+impl Deformer {
+    /// Binds points without the GIL.
+    pub(crate) fn bound(
+        py: Python<'_>,
+        x: &[f64],
+        dim: usize,
+        weights: &neuralmls_core::Weights,
+        tree: Option<&PointTree>,
+        transform: Transform,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Deformer> {
+        let tree = tree.map(|tree| &tree.0);
+        let bind = |report: &mut dyn FnMut(f64) -> bool| {
+            neuralmls_core::Deformer::new(copy_of(x), weights, tree, transform, report)
+        };
+        Ok(Deformer { inner: run(py, progress, bind)?, dim })
+    }
+
+    /// One frame, without the GIL.
+    pub(crate) fn frame<'py>(
+        &self,
+        py: Python<'py>,
+        pose: Pose<'_>,
         temperature: f64,
         maps: bool,
         out: Option<Bound<'py, PyArray2<f64>>>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Deformed<'py>> {
         let (n, d) = (self.inner.len(), self.dim);
-        let pose = pose(&q, turns.as_ref())?;
         let positions = out.unwrap_or_else(|| PyArray2::zeros(py, [n, d], false));
         let maps = maps.then(|| PyArray3::zeros(py, [n, d, d], false));
         {
-            // Refused if anything else reads or writes it meanwhile.
-            let mut y = positions.try_readwrite()?;
+            let taken = |_| argument("out: another call reads or writes this array at the same time");
+            let mut y = positions.try_readwrite().map_err(taken)?;
             let y = y.as_slice_mut()?;
             let mut m = maps.as_ref().map(|maps| maps.try_readwrite()).transpose()?;
             let m = m.as_mut().map(|maps| maps.as_slice_mut()).transpose()?;

@@ -1,6 +1,6 @@
 //! Errors of the crates as exceptions of the package.
 
-use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError};
 use pyo3::prelude::*;
 
 /// An exception of `neuralmls.errors`.
@@ -23,6 +23,7 @@ pub(crate) fn from_core(error: neuralmls_core::Error, cause: Option<PyErr>) -> P
     match (error, cause) {
         (neuralmls_core::Error::Cancelled, Some(cause)) => cause,
         (neuralmls_core::Error::Cancelled, None) => PyKeyboardInterrupt::new_err(()),
+        (error @ neuralmls_core::Error::Memory, _) => PyMemoryError::new_err(error.to_string()),
         (error, _) => argument(error.to_string()),
     }
 }
@@ -32,5 +33,17 @@ pub(crate) fn from_shapes(error: &neuralmls_shapes::Error) -> PyErr {
     match error.kind {
         neuralmls_shapes::ErrorKind::Argument => argument(error.message.clone()),
         _ => exception("FileError", error.to_string()),
+    }
+}
+
+/// An error of a session; where it was cancelled, what cancelled it.
+pub(crate) fn from_session(error: neuralmls_session::Error, cause: Option<PyErr>) -> PyErr {
+    use neuralmls_session::ErrorKind;
+    match error.kind {
+        ErrorKind::File => exception("FileError", error.message),
+        ErrorKind::ControlPoint => exception("ControlPointError", error.message),
+        ErrorKind::Argument => argument(error.message),
+        ErrorKind::Memory => PyMemoryError::new_err(error.message),
+        ErrorKind::Cancelled => cause.unwrap_or_else(|| PyKeyboardInterrupt::new_err(())),
     }
 }

@@ -1,13 +1,15 @@
-//! The Python face of NeuralMLS: converts arguments, releases the GIL, calls the crates. No mathematics.
+//! The Python face of NeuralMLS: converts arguments, releases the GIL, calls the crates. No mathematics, no rule, no sentence.
 //!
-//! The package's own modules are the only callers; they check and explain arguments before they come here.
+//! The package's own modules are the only callers.
 
-mod advice;
+mod arrays;
 mod deformer;
 mod errors;
-mod exact;
+mod handles;
+mod map;
 mod placement;
 mod progress;
+mod session;
 mod shape_file;
 mod weights;
 
@@ -16,17 +18,19 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     #[pymodule_export]
-    use crate::advice::Probe;
-    #[pymodule_export]
     use crate::deformer::Deformer;
     #[pymodule_export]
-    use crate::exact::ExactHandles;
+    use crate::handles::Handles;
+    #[pymodule_export]
+    use crate::map::{Map, Report};
     #[pymodule_export]
     use crate::placement::{farthest_of, farthest_points, sample_surface};
     #[pymodule_export]
+    use crate::session::{ControlPoints, Orientation, Session};
+    #[pymodule_export]
     use crate::shape_file::ShapeFile;
     #[pymodule_export]
-    use crate::weights::{fit, inverse_distance_logits, train, Network, PointTree};
+    use crate::weights::{PointTree, Weights};
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
 }

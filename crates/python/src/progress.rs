@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 
-use crate::errors::from_core;
+use crate::errors::{from_core, from_session};
 
 /// Runs `work` without the GIL. The function that it reports to calls the Python `progress` (if any) with the fraction done, and stops
 /// the work when that raises or a signal handler does.
@@ -10,6 +10,24 @@ pub(crate) fn run<T: Send>(
     py: Python<'_>,
     progress: Option<Py<PyAny>>,
     work: impl FnOnce(&mut dyn FnMut(f64) -> bool) -> Result<T, neuralmls_core::Error> + Send,
+) -> PyResult<T> {
+    run_with(py, progress, work, from_core)
+}
+
+/// The same for what a session does.
+pub(crate) fn run_session<T: Send>(
+    py: Python<'_>,
+    progress: Option<Py<PyAny>>,
+    work: impl FnOnce(&mut dyn FnMut(f64) -> bool) -> Result<T, neuralmls_session::Error> + Send,
+) -> PyResult<T> {
+    run_with(py, progress, work, from_session)
+}
+
+fn run_with<T: Send, E: Send>(
+    py: Python<'_>,
+    progress: Option<Py<PyAny>>,
+    work: impl FnOnce(&mut dyn FnMut(f64) -> bool) -> Result<T, E> + Send,
+    raised: impl FnOnce(E, Option<PyErr>) -> PyErr + Send,
 ) -> PyResult<T> {
     py.detach(|| {
         let mut cause = None;
@@ -23,6 +41,6 @@ pub(crate) fn run<T: Send>(
                 cause.is_none()
             })
         });
-        result.map_err(|error| from_core(error, cause))
+        result.map_err(|error| raised(error, cause))
     })
 }

@@ -9,7 +9,7 @@ use crate::errors::from_shapes;
 
 /// A shape read from the bytes of a file.
 #[pyclass(frozen)]
-pub(crate) struct ShapeFile(Shape);
+pub(crate) struct ShapeFile(pub Shape);
 
 /// The file's bytes, and its changed side files: the path that it names, the path that the original names, the bytes.
 type Written<'py> = (Bound<'py, PyBytes>, Vec<(String, String, Bound<'py, PyBytes>)>);

@@ -1,49 +1,15 @@
-//! Weight functions.
+//! Weight functions, and points ordered for their evaluation.
 
-use neuralmls_core::{Error, Fit, Frame, InverseDistance, Layer, Samples, Schedule, Training};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use std::sync::Arc;
+
+use neuralmls_core::{Frame, InverseDistance, Layer, Network, Samples, Schedule, Trained, Training};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
-use crate::errors::{argument, from_core};
+use crate::arrays::{frame, table};
+use crate::errors::{argument, from_core, from_session};
 use crate::progress::run;
-
-fn frame(centre: &[f64], half: f64) -> PyResult<Frame> {
-    if centre.len() > 3 || !(half > 0.0 && half.is_finite()) || centre.iter().any(|c| !c.is_finite()) {
-        return Err(argument("bounds: expected a finite box with a size above 0"));
-    }
-    let mut frame = Frame { centre: [0.0; 3], half };
-    frame.centre[..centre.len()].copy_from_slice(centre);
-    Ok(frame)
-}
-
-fn schedule(steps: Option<usize>) -> Schedule {
-    steps.map_or(Training::default().schedule, Schedule::Fixed)
-}
-
-fn matrix<'py>(py: Python<'py>, numbers: Vec<f32>, columns: usize) -> PyResult<Bound<'py, PyArray2<f32>>> {
-    let rows = numbers.len() / columns.max(1);
-    PyArray1::from_vec(py, numbers).reshape([rows, columns])
-}
-
-/// The classic weights' logits, n x m float32.
-#[pyfunction]
-#[pyo3(signature = (x, p, half, alpha, epsilon, progress))]
-pub(crate) fn inverse_distance_logits<'py>(
-    py: Python<'py>,
-    x: PyReadonlyArray2<'py, f64>,
-    p: PyReadonlyArray2<'py, f64>,
-    half: f64,
-    alpha: f64,
-    epsilon: f64,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<Bound<'py, PyArray2<f32>>> {
-    let [m, dim] = [p.shape()[0], p.shape()[1]];
-    let function = InverseDistance::new(p.as_slice()?, dim, frame(&[], half)?, alpha, epsilon)
-        .map_err(|error| from_core(error, None))?;
-    let points = x.as_slice()?;
-    let logits = run(py, progress, |report| function.logits(points, report))?;
-    matrix(py, logits, m)
-}
 
 /// Points ordered for the evaluation of networks of one frame.
 #[pyclass(frozen)]
@@ -52,77 +18,199 @@ pub(crate) struct PointTree(pub neuralmls_core::PointTree);
 #[pymethods]
 impl PointTree {
     #[new]
+    #[pyo3(signature = (x, bounds, progress))]
     fn new(
         py: Python<'_>,
         x: PyReadonlyArray2<'_, f64>,
-        centre: Vec<f64>,
-        half: f64,
+        bounds: Option<PyReadonlyArray2<'_, f64>>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<PointTree> {
-        let (dim, frame) = (x.shape()[1], frame(&centre, half)?);
-        let points = x.as_slice()?;
+        let (dim, points) = (x.shape()[1], x.as_slice()?);
+        let frame = frame(bounds, points, dim)?;
         run(py, progress, |report| neuralmls_core::PointTree::new(points, dim, frame, report)).map(PointTree)
     }
 }
 
-/// A trained network.
+/// A weight function.
 #[pyclass(frozen)]
-pub(crate) struct Network(pub neuralmls_core::Network);
+pub(crate) struct Weights(pub Arc<neuralmls_core::Weights>);
 
 /// The weight and the bias of a layer.
 type LayerArrays<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray1<f32>>);
+/// The same, as they are given.
+type GivenLayer<'py> = (PyReadonlyArray2<'py, f32>, PyReadonlyArray1<'py, f32>);
+
+impl Weights {
+    fn of(weights: neuralmls_core::Weights) -> Weights {
+        Weights(Arc::new(weights))
+    }
+
+    fn trained(&self) -> Option<&Trained> {
+        match &*self.0 {
+            neuralmls_core::Weights::Neural(trained) | neuralmls_core::Weights::ShapeAware(trained) => {
+                Some(trained)
+            }
+            neuralmls_core::Weights::InverseDistance(_) => None,
+        }
+    }
+}
 
 #[pymethods]
-impl Network {
+impl Weights {
+    /// The paper's: trained on the control points alone; `steps` None: until the loss is small.
+    #[staticmethod]
+    #[allow(clippy::too_many_arguments)] // One a keyword of the package's own function.
+    fn neural(
+        py: Python<'_>,
+        p: PyReadonlyArray2<'_, f64>,
+        bounds: Option<PyReadonlyArray2<'_, f64>>,
+        width: usize,
+        steps: Option<usize>,
+        rate: f64,
+        seed: u64,
+        fourier_sigma: Option<f64>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Weights> {
+        let (dim, p) = (p.shape()[1], p.as_slice()?);
+        let frame = frame(bounds, p, dim)?;
+        let schedule = steps.map_or(Training::default().schedule, Schedule::Fixed);
+        let training = Training { width, schedule, rate, seed, fourier_sigma };
+        run(py, progress, |report| neuralmls_core::Weights::neural(p, dim, frame, &training, report))
+            .map(Weights::of)
+    }
+
+    /// Taught by samples of a shape with soft labels (k x m), of which a step looks at `batch`.
+    #[staticmethod]
+    #[allow(clippy::too_many_arguments)]
+    fn shape_aware(
+        py: Python<'_>,
+        p: PyReadonlyArray2<'_, f64>,
+        bounds: Option<PyReadonlyArray2<'_, f64>>,
+        x: PyReadonlyArray2<'_, f64>,
+        labels: PyReadonlyArray2<'_, f32>,
+        batch: usize,
+        softness: f32,
+        width: usize,
+        steps: usize,
+        rate: f64,
+        seed: u64,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Weights> {
+        let (dim, p) = (p.shape()[1], p.as_slice()?);
+        let frame = frame(bounds, p, dim)?;
+        let training =
+            Training { width, schedule: Schedule::Cosine(steps), rate, seed, fourier_sigma: None };
+        let samples = Samples { x: x.as_slice()?, labels: labels.as_slice()?, batch };
+        run(py, progress, |report| {
+            neuralmls_core::Weights::shape_aware(p, dim, frame, samples, softness, &training, report)
+        })
+        .map(Weights::of)
+    }
+
+    /// The classic ones.
+    #[staticmethod]
+    fn inverse_distance(
+        p: PyReadonlyArray2<'_, f64>,
+        bounds: Option<PyReadonlyArray2<'_, f64>>,
+        alpha: f64,
+        epsilon: f64,
+    ) -> PyResult<Weights> {
+        let (dim, p) = (p.shape()[1], p.as_slice()?);
+        let frame = frame(bounds, p, dim)?;
+        InverseDistance::new(p, dim, frame, alpha, epsilon)
+            .map(|function| Weights::of(neuralmls_core::Weights::InverseDistance(function)))
+            .map_err(|error| from_core(error, None))
+    }
+
     /// A network of given parameters: three (weight, bias), and the frequencies of Fourier features (0 rows without).
-    #[new]
-    fn new(
-        dim: usize,
+    #[staticmethod]
+    fn of_layers(
+        p: PyReadonlyArray2<'_, f64>,
         centre: Vec<f64>,
         half: f64,
         frequencies: PyReadonlyArray2<'_, f32>,
-        layers: [(PyReadonlyArray2<'_, f32>, PyReadonlyArray1<'_, f32>); 3],
-    ) -> PyResult<Network> {
+        layers: [GivenLayer<'_>; 3],
+    ) -> PyResult<Weights> {
+        let dim = p.shape()[1];
+        if centre.len() != dim || !(half > 0.0 && half.is_finite()) || centre.iter().any(|c| !c.is_finite()) {
+            return Err(argument("expected a finite frame with a size above 0"));
+        }
+        let mut frame = Frame { centre: [0.0; 3], half };
+        frame.centre[..dim].copy_from_slice(&centre);
         let mut read = Vec::with_capacity(3);
         for (weight, bias) in &layers {
             read.push(Layer { weight: weight.as_slice()?.to_vec(), bias: bias.as_slice()?.to_vec() });
         }
         let layers: [Layer; 3] = read.try_into().expect("three layers");
-        neuralmls_core::Network::new(dim, frame(&centre, half)?, frequencies.as_slice()?.to_vec(), layers)
-            .map(Network)
-            .map_err(|error| from_core(error, None))
+        let network = Network::new(dim, frame, frequencies.as_slice()?.to_vec(), layers)
+            .map_err(|error| from_core(error, None))?;
+        let control_points = p.as_slice()?.to_vec();
+        let trained = Trained { control_points, network, losses: Vec::new(), loss: f64::NAN };
+        Ok(Weights::of(neuralmls_core::Weights::Neural(trained)))
+    }
+
+    /// The same network, trained further on the control points.
+    fn further(
+        &self,
+        py: Python<'_>,
+        steps: Option<usize>,
+        rate: f64,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Weights> {
+        let trained = self.trained().ok_or_else(|| argument("expected weights of a network"))?;
+        let schedule = steps.map_or(Training::default().schedule, Schedule::Fixed);
+        run(py, progress, |report| trained.further(schedule, rate, report))
+            .map(|trained| Weights::of(neuralmls_core::Weights::Neural(trained)))
     }
 
     #[getter]
-    fn dim(&self) -> usize {
-        self.0.dim()
+    fn kind(&self) -> &'static str {
+        self.0.kind()
     }
 
     #[getter]
-    fn centre(&self) -> Vec<f64> {
-        self.0.frame().centre[..self.0.dim()].to_vec()
+    fn control_points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        table(py, self.0.control_points().to_vec(), self.0.dim())
     }
 
+    /// The centre and half of the longest side of the box.
     #[getter]
-    fn half(&self) -> f64 {
-        self.0.frame().half
+    fn frame(&self) -> (Vec<f64>, f64) {
+        let frame = self.0.frame();
+        (frame.centre[..self.0.dim()].to_vec(), frame.half)
     }
 
+    /// The loss before each step; None but for networks.
     #[getter]
-    fn frequencies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        matrix(py, self.0.frequencies().to_vec(), self.0.dim())
+    fn losses<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        Some(PyArray1::from_slice(py, &self.trained()?.losses))
     }
 
+    /// The loss after the training.
+    #[getter]
+    fn loss(&self) -> Option<f64> {
+        Some(self.trained()?.loss)
+    }
+
+    /// Alpha and epsilon of the classic ones.
+    #[getter]
+    fn parameters(&self) -> Option<(f64, f64)> {
+        match &*self.0 {
+            neuralmls_core::Weights::InverseDistance(function) => Some((function.alpha(), function.epsilon())),
+            _ => None,
+        }
+    }
+
+    /// Weight and bias of each layer.
     #[getter]
     fn layers<'py>(&self, py: Python<'py>) -> PyResult<Vec<LayerArrays<'py>>> {
         let arrays = |layer: &Layer| {
-            Ok((matrix(py, layer.weight.clone(), layer.inputs())?, PyArray1::from_slice(py, &layer.bias)))
+            Ok((table(py, layer.weight.clone(), layer.inputs())?, PyArray1::from_slice(py, &layer.bias)))
         };
-        self.0.layers().iter().map(arrays).collect()
+        self.trained().map_or(Ok(Vec::new()), |trained| trained.network.layers().iter().map(arrays).collect())
     }
 
     /// Logits, n x m float32.
-    #[pyo3(signature = (x, progress))]
     fn logits<'py>(
         &self,
         py: Python<'py>,
@@ -131,11 +219,10 @@ impl Network {
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let points = x.as_slice()?;
         let logits = run(py, progress, |report| self.0.logits(points, report))?;
-        matrix(py, logits, self.0.outputs())
+        table(py, logits, self.0.control_points().len() / self.0.dim())
     }
 
     /// Logits of the points of a tree, in their own order.
-    #[pyo3(signature = (tree, progress))]
     fn logits_of_tree<'py>(
         &self,
         py: Python<'py>,
@@ -143,70 +230,19 @@ impl Network {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let logits = run(py, progress, |report| self.0.logits_of_tree(&tree.0, report))?;
-        matrix(py, logits, self.0.outputs())
+        table(py, logits, self.0.control_points().len() / self.0.dim())
     }
-}
 
-/// A network, the losses before each step, and the loss after the last.
-type Trained = (Network, Vec<f64>, f64);
+    /// As a file (crates/session/src/map_file.rs).
+    fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &neuralmls_session::weights_to_bytes(&self.0))
+    }
 
-fn trained(fit: Fit) -> Trained {
-    (Network(fit.network), fit.losses, fit.loss)
-}
-
-/// Points with soft labels, n x m, and how many of them a step looks at.
-type SampleArrays<'py> = (PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, f32>, usize);
-
-/// Makes a network from a seed and trains it; `steps` None: until the loss is small.
-#[pyfunction]
-#[pyo3(signature = (p, centre, half, width, steps, rate, seed, fourier_sigma, progress, samples=None))]
-#[allow(clippy::too_many_arguments)] // One a keyword of the package's own function.
-pub(crate) fn fit(
-    py: Python<'_>,
-    p: PyReadonlyArray2<'_, f64>,
-    centre: Vec<f64>,
-    half: f64,
-    width: usize,
-    steps: Option<usize>,
-    rate: f64,
-    seed: u64,
-    fourier_sigma: Option<f64>,
-    progress: Option<Py<PyAny>>,
-    samples: Option<SampleArrays<'_>>,
-) -> PyResult<Trained> {
-    let (dim, frame) = (p.shape()[1], frame(&centre, half)?);
-    let schedule = match (steps, &samples) {
-        (Some(steps), Some(_)) => Schedule::Cosine(steps),
-        _ => schedule(steps),
-    };
-    let training = Training { width, schedule, rate, seed, fourier_sigma };
-    let points = p.as_slice()?;
-    let samples = match &samples {
-        Some((x, labels, batch)) => {
-            Some(Samples { x: x.as_slice()?, labels: labels.as_slice()?, batch: *batch })
-        }
-        None => None,
-    };
-    let work = |report: &mut dyn FnMut(f64) -> bool| {
-        neuralmls_core::logits::neural::fit(points, samples, dim, frame, &training, report)
-    };
-    run(py, progress, work).map(trained)
-}
-
-/// Trains a given network.
-#[pyfunction]
-#[pyo3(signature = (network, p, steps, rate, progress))]
-pub(crate) fn train(
-    py: Python<'_>,
-    network: &Network,
-    p: PyReadonlyArray2<'_, f64>,
-    steps: Option<usize>,
-    rate: f64,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<Trained> {
-    let (network, points) = (network.0.clone(), p.as_slice()?);
-    let work = |report: &mut dyn FnMut(f64) -> bool| -> Result<Fit, Error> {
-        neuralmls_core::logits::neural::train(network, points, schedule(steps), rate, report)
-    };
-    run(py, progress, work).map(trained)
+    /// Reads what `to_bytes` wrote.
+    #[staticmethod]
+    fn from_bytes(data: &[u8]) -> PyResult<Weights> {
+        neuralmls_session::weights_from_bytes(data)
+            .map(Weights::of)
+            .map_err(|error| from_session(error, None))
+    }
 }

@@ -1,102 +1,56 @@
-//! Control points that arrive. The main thread has one of these for each frame of a drag; workers have it in their fit.
+//! Control points that arrive. The main thread has one of these for each frame of a drag; workers have it in their map.
 
-use js_sys::{Array, Float64Array};
-use neuralmls_core::{Aim, Error, ExactHandles, Pose, Remedy, Transform};
+use js_sys::Float64Array;
+use neuralmls_core::Pose;
 use wasm_bindgen::prelude::*;
 
+use crate::session::Session;
 use crate::refused;
 
-/// The control points as points that are moved themselves.
+/// The control points of a session as points that are moved themselves.
 #[wasm_bindgen]
-pub struct Handles(ExactHandles);
+pub struct Handles {
+    session: neuralmls_session::Session,
+    core: neuralmls_core::Handles,
+}
 
 #[wasm_bindgen]
 impl Handles {
-    /// Of the control points `p` (m x dim), with the logits at their own places (m x m).
+    /// Of a session, with the logits at its control points' own places (m x m).
     ///
     /// # Errors
     /// Where the lengths do not fit.
     #[wasm_bindgen(constructor)]
-    pub fn new(p: &[f64], dim: usize, own_logits: Vec<f32>) -> Result<Handles, JsError> {
-        Handles::of(p, dim, own_logits).map_err(refused)
+    pub fn new(session: &Session, own_logits: Vec<f32>) -> Result<Handles, JsError> {
+        let session = session.session.clone();
+        let (p, dim) = (session.points.sources(), session.points.dim());
+        let core = neuralmls_core::Handles::of_logits(&p, dim, own_logits, session.settings.transform);
+        Ok(Handles { core: core.map_err(refused)?, session })
     }
 
-    /// Where to aim for the targets `q` (m x dim), turned by `turns` (m x dim x dim, NaN for those that are not; undefined: none is): as
-    /// [`ExactHandles::aim_carefully`] has it.
+    /// Other settings, or weights of control points, for the same control points at rest.
+    pub fn set_session(&mut self, session: &Session) {
+        self.session = session.session.clone();
+        self.core.set_transform(self.session.settings.transform);
+    }
+
+    /// Where to aim for the targets `q` (m x dim), oriented by `orientations` (m x dim x dim, NaN for those that are not; undefined: none is):
+    /// m x dim numbers; then the map that fits all control points with equal weights, from `q` as they are aimed at: its rotation (9), its
+    /// scale, its linear map (9), which the shader falls back on (dim x dim each).
     ///
     /// # Errors
-    /// Where `q` does not fit, or a number is out of its range.
-    pub fn aim(
-        &mut self,
-        q: &[f64],
-        turns: Option<Vec<f64>>,
-        transform: &str,
-        temperature: f64,
-        adherence: f64,
-    ) -> Result<Float64Array, JsError> {
-        let pose = Pose { q, turns: turns.as_deref() };
-        Ok(Float64Array::from(&self.aimed(pose, transform, temperature, adherence)?.targets[..]))
-    }
-
-    /// Where the control points land when they are pulled to `q` (m x dim); then, where they do not arrive as the adherence says:
-    /// "shared" (they are left soft) or "unreached", the control point to blame, how much, and what helps: "affine", a temperature, or null.
-    ///
-    /// # Errors
-    /// As [`Handles::aim`].
-    pub fn land(
-        &mut self,
-        q: &[f64],
-        turns: Option<Vec<f64>>,
-        transform: &str,
-        temperature: f64,
-        adherence: f64,
-    ) -> Result<Array, JsError> {
-        let pose = Pose { q, turns: turns.as_deref() };
-        let Aim { targets, soft, .. } = self.aimed(pose, transform, temperature, adherence)?;
-        let landed = self.0.land(Pose { q: &targets, ..pose }, temperature).map_err(refused)?;
-        let result = Array::of1(&Float64Array::from(&landed[..]));
-        if let Some(soft) = soft {
-            let (reason, control_point, amount) = soft.named();
-            let remedy = match self.0.remedy(pose, temperature, adherence).map_err(refused)? {
-                Some(Remedy::Temperature(other)) => JsValue::from_f64(other),
-                Some(Remedy::Affine) => JsValue::from_str("affine"),
-                None => JsValue::NULL,
-            };
-            result.push(&JsValue::from_str(reason));
-            result.push(&JsValue::from_f64(control_point as f64));
-            result.push(&JsValue::from_f64(amount));
-            result.push(&remedy);
-        }
-        Ok(result)
-    }
-}
-
-impl Handles {
-    pub(crate) fn of(p: &[f64], dim: usize, own_logits: Vec<f32>) -> Result<Handles, Error> {
-        ExactHandles::new(p, dim, own_logits, Transform::Rigid).map(Handles)
-    }
-
-    pub(crate) fn logits(&self) -> &[f32] {
-        self.0.logits()
-    }
-
-    pub(crate) fn aimed(
-        &mut self,
-        pose: Pose<'_>,
-        transform: &str,
-        temperature: f64,
-        adherence: f64,
-    ) -> Result<Aim, JsError> {
-        self.0.set_transform(named(transform)?);
-        self.0.aim_carefully(pose, temperature, adherence).map_err(refused)
-    }
-}
-
-pub(crate) fn named(transform: &str) -> Result<Transform, JsError> {
-    match transform {
-        "rigid" => Ok(Transform::Rigid),
-        "similarity" => Ok(Transform::Similarity),
-        "affine" => Ok(Transform::Affine),
-        other => Err(refused(format!("transform: expected rigid, similarity or affine, found {other}"))),
+    /// Where `q` does not fit.
+    pub fn aim(&self, q: &[f64], orientations: Option<Vec<f64>>) -> Result<Float64Array, JsError> {
+        let pose = Pose { q, orientations: orientations.as_deref() };
+        let aim = self.session.aim(&self.core, pose).map_err(refused)?;
+        let anchor = self.core.anchor(&aim.targets, pose.orientations).map_err(refused)?;
+        let numbers: Vec<f64> = aim
+            .targets
+            .into_iter()
+            .chain(anchor.rotation)
+            .chain([anchor.scale])
+            .chain(anchor.linear)
+            .collect();
+        Ok(Float64Array::from(&numbers[..]))
     }
 }

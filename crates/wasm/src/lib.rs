@@ -3,9 +3,9 @@
 //! The editor's worker (`editor/src/worker`) is the only caller. Long calls tell a JavaScript function how far they are; they are
 //! stopped by ending their worker.
 
-mod fit;
 mod handles;
-mod points;
+mod map;
+mod session;
 mod shape_file;
 
 use js_sys::Function;

@@ -1,7 +1,7 @@
 //! Shapes read from bytes.
 
 use js_sys::{Array, Float64Array, Function, Uint32Array, Uint8Array};
-use neuralmls_core::{advice, placement};
+use neuralmls_core::placement;
 use neuralmls_shapes::Shape;
 use wasm_bindgen::prelude::*;
 
@@ -77,17 +77,6 @@ impl ShapeFile {
     pub fn farthest_points(&self, count: usize, seed: u64) -> Result<Float64Array, JsError> {
         let faces = self.0.faces().unwrap_or_default();
         placement::farthest_points(self.0.positions(), self.0.dim(), faces, count, seed, &mut |_| true)
-            .map(|places| Float64Array::from(&places[..]))
-            .map_err(refused)
-    }
-
-    /// `count` places on the shape to look at, each as likely as another.
-    ///
-    /// # Errors
-    /// Where a face names no point.
-    pub fn sample(&self, count: usize) -> Result<Float64Array, JsError> {
-        let faces = self.0.faces().unwrap_or_default();
-        advice::places(self.0.positions(), self.0.dim(), faces, count)
             .map(|places| Float64Array::from(&places[..]))
             .map_err(refused)
     }

@@ -1,41 +1,33 @@
-"""`neuralmls deform`: a shape, control points, and the same file with its shape bent."""
+"""`neuralmls deform`: shapes, control points, and the same files with their shapes bent."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from neuralmls.cli import console, options, outputs
+from neuralmls.cli import console, inputs, moves, options, outputs, settings
 from neuralmls.cli.stages import Stages
-from neuralmls.cli.weights import WeightsChoice, weights_options
-from neuralmls.errors import ArgumentError
+from neuralmls.errors import ArgumentError, NeuralMLSError
 
 if TYPE_CHECKING:
-    from neuralmls.cli.deformation import Deformation
+    from neuralmls.map import Map
+    from neuralmls.session import Session
     from neuralmls.shape import Shape
-
-TransformName: TypeAlias = Literal["rigid", "similarity", "affine"]
 
 
 @click.command()
-@options.shape
-@options.points("The control points and their targets, JSON or CSV.")
-@options.output("The file to write, of the shape's format; - for standard output.")
-@weights_options
-@click.option(
-    "--transform",
-    type=click.Choice(get_args(TransformName)),
-    default="rigid",
-    help="What may happen to the shape locally.",
-)
+@options.shapes
+@options.session
+@click.option("--map", "saved", type=options.PATH, help="A map that `neuralmls fit` wrote, in the place of a fit.")
+@options.output("The file to write, of the shape's format, or a folder; - for standard output.")
+@settings.settings_options(*settings.WEIGHTS, *settings.MOTION)
 @click.option(
     "--move",
-    "moves",
+    "offsets",
     metavar="NAME=DX,DY,DZ",
     multiple=True,
     help="Move a target, from where the file has it; may be repeated.",
@@ -47,12 +39,6 @@ TransformName: TypeAlias = Literal["rigid", "similarity", "affine"]
     multiple=True,
     help="Turn a control point, and what is near it, about x, y, z or an axis of three numbers; may be repeated.",
 )
-@click.option(
-    "--exact/--no-exact",
-    default=None,
-    help="Take the control points all the way to their targets, at any price, or only near them. "
-    "If not given: all the way where they own their places and arrive, else near.",
-)
 @click.option("--check", is_flag=True, help="Say where the result is likely bad, and what would help.")
 @options.json
 @options.quiet
@@ -60,149 +46,174 @@ TransformName: TypeAlias = Literal["rigid", "similarity", "affine"]
 @options.force
 def deform(
     *,
-    shape: Path,
-    points: Path,
+    shapes: Sequence[Path],
+    points: Path | None,
+    targets: Path | None,
+    by_order: bool,
+    saved: Path | None,
     output: Path,
-    choice: WeightsChoice,
-    temperature: float,
-    transform: TransformName,
-    moves: Sequence[str],
+    said: dict[str, Any],
+    offsets: Sequence[str],
     turns: Sequence[str],
-    exact: bool | None,
     check: bool,
     json: bool,
     quiet: bool,
     verbose: bool,
     force: bool,
 ) -> None:
-    """Bend a shape by its control points.
+    """Bend shapes by control points.
 
-    Writes the same file with new positions. Everything else in the file is carried over;
-    unmoved control points give the very same bytes. What a session of the editor sets
-    (weights, transform, temperature, adherence) holds where no option says otherwise.
+    Writes the same files with new positions. Everything else in them is carried over; unmoved control
+    points give the very same bytes. Several shapes are bent by one map, so that they stay together.
+    What a session sets (weights, transform, temperature, handles) holds where no option says otherwise.
 
     Example: neuralmls deform chair.obj --points chair.json -o bent.obj
     """
-    offsets = dict(_offsets(moves))
-    axes = dict(_axes(turns))
-    to_stdout = output == outputs.STANDARD_OUTPUT
-    if not to_stdout:
-        outputs.check_output(output, force=force, inputs=[shape, points])
-
-    from neuralmls.arrays import as_number
-    from neuralmls.cli import deformation, summary
-    from neuralmls.cli.session import Settings, with_session
-    from neuralmls.control_points import ControlPoints
-    from neuralmls.shape import read
-    from neuralmls.turns import Turn
-
-    as_number("temperature", temperature, 0)
-    choice.check()
-    stages = Stages(quiet=quiet)
+    given = [path for path in (*shapes, points, targets, saved) if path is not None]
+    inputs.one_standard_input(given)
+    files = outputs.of_shapes(shapes, output)
+    for file in files:
+        outputs.check_output(file, force=force, inputs=given)
+    stages, failed = Stages(quiet=quiet), Failed(several=len(shapes) > 1)
     with stages.stage("read"):
-        source = read(shape)
-        if not to_stdout:
-            outputs.check_ending(output, source.extensions, f"a bent {source.format} file (formats are not converted)")
-        deformation.check_size(source)
-        control_points = ControlPoints.read(points).moved(offsets)
-        control_points = control_points.turned({name: Turn(tuple(axis), angle) for name, (axis, angle) in axes.items()})
-        given = Settings(choice, temperature, transform, 0.0 if exact is False else 1.0, careful=exact is None)
-        settings = with_session(given, points)
-    warnings = deformation.check_points(control_points, points, source)
-    moved = bool((control_points.sources != control_points.targets).any()) or control_points.is_turned
-    if moved:
-        _check_side_files(source, output, force=force)
-    if not moved:
-        warnings.append("no control point is moved, so that the output is the input")
-    for sentence in warnings:
+        session, ready = _session(points, targets, by_order, saved)
+        session = inputs.settings_of(said, session)
+        session = session.replace(points=moves.moved(session.points, offsets, turns))
+        read = []
+        for path, file in zip(shapes, files, strict=True):
+            with failed:
+                read.append((_read(path, file, force=force), file))
+    warnings = _warnings(session, points or saved, [shape for shape, _ in read])
+    if ready is None and read:
+        with stages.stage("bind" if session.weights == "inverse-distance" else "train") as report:
+            ready = session.fit(*(shape for shape, _ in read), progress=report)
+    elif ready is not None:
+        ready = ready.with_session(session)
+    results = []
+    for shape, file in read:
+        assert ready is not None
+        with failed:
+            results.append(_bent(shape, file, ready, stages, check=check, force=force))
+    for sentence in dict.fromkeys([*warnings, *(warning for told in results for warning in told["warnings"])]):
         console.warning(sentence)
-    result = deformation.deformed(source, control_points, settings, stages)
-    sentences = deformation.not_parted(control_points, settings.choice, result)
-    advice = []
-    if check:
-        with stages.stage("check"):
-            advice = deformation.advice(source, control_points, result, settings)
-    else:  # the advice says it too
-        sentences += deformation.not_arrived(control_points, source, result)
-    for sentence in sentences:
-        console.warning(sentence)
-        warnings.append(sentence)
-    for item in advice:
-        console.warning(item.sentence)
-    with stages.stage("write"):
-        files, kept = _write(source, result, output, force=force)
-    for sentence in kept:
-        console.warning(sentence)
-        warnings.append(sentence)
-    told = summary.summary(source, control_points, settings, result)
-    told |= {"output": str(output), "files": files, "warnings": warnings, "seconds": stages.seconds}
-    if check:
-        told["advice"] = [asdict(item) for item in advice]
-    out = sys.stderr if to_stdout else sys.stdout
-    if json:
-        console.document(told, out)
-    elif not quiet:
-        summary.show(told, everything=verbose, file=out)
+    _tell(results, stages, warnings, points, json=json, quiet=quiet, verbose=verbose)
+    failed.raise_last()
 
 
-def _offsets(moves: Sequence[str]) -> Iterator[tuple[str, list[float]]]:
-    """What `--move NAME=dx,dy,dz` says."""
-    for name, numbers, text in _named("--move", "moved", moves):
-        try:
-            yield name, [_number(number) for number in numbers]
-        except ValueError:
-            raise ArgumentError(f"--move: expected NAME=dx,dy,dz, found '{text}'") from None
+class Failed:
+    """Errors of single shapes among several, which do not stop the others; that of a single shape is raised at once."""
+
+    def __init__(self, *, several: bool) -> None:
+        self._several = several
+        self._errors: list[NeuralMLSError] = []
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(self, kind: object, error: BaseException | None, _: object) -> bool:
+        if not self._several or not isinstance(error, NeuralMLSError):
+            return False
+        self._errors.append(error)
+        return True
+
+    def raise_last(self) -> None:
+        """Say all but the last, and raise that."""
+        for error in self._errors[:-1]:
+            console.error(str(error))
+        if self._errors:
+            raise self._errors[-1]
 
 
-def _axes(turns: Sequence[str]) -> Iterator[tuple[str, tuple[list[float], float]]]:
-    """The axis, of 3 numbers or none, and the degrees that `--turn NAME=AXIS,DEGREES` says."""
-    axes = {"x": [1.0, 0.0, 0.0], "y": [0.0, 1.0, 0.0], "z": [0.0, 0.0, 1.0]}
-    for name, (*letters, degrees), text in _named("--turn", "turned", turns):
-        try:
-            known = axes.get("".join(letters)) or [_number(number) for number in letters]
-            if len(known) not in (0, 3):
-                raise ValueError
-            yield name, (known, _number(degrees))
-        except ValueError:
-            expected = "NAME=AXIS,DEGREES with the axis x, y, z or three numbers (none in the plane)"
-            raise ArgumentError(f"--turn: expected {expected}, found '{text}'") from None
+def _session(
+    points: Path | None, targets: Path | None, by_order: bool, saved: Path | None
+) -> tuple[Session, Map | None]:
+    """The session as files have it, and the map that was fitted already."""
+    from neuralmls.map import Map
+
+    if points is None and saved is None:
+        raise ArgumentError("--points: expected a file of control points, or a fitted map with --map")
+    session = None if points is None else inputs.read_session(points, targets, by_order=by_order)
+    if saved is None:
+        assert session is not None
+        return session, None
+    ready = Map.load(saved)
+    if session is None:
+        return ready.session, ready
+    kept = ready.session.replace(points=session.points)
+    if session.has_settings:
+        kept = kept.replace(**{key: session.settings[key] for key in ("transform", "temperature", "handles")})
+    return kept, ready
 
 
-def _named(option: str, done: str, texts: Sequence[str]) -> Iterator[tuple[str, list[str], str]]:
-    """Name and numbers of each `NAME=NUMBERS`; a name may have = in it."""
-    seen = set()
-    for text in texts:
-        name, _, numbers = text.rpartition("=")
-        if name in seen:
-            raise ArgumentError(f"{option}: '{name}' is {done} twice")
-        seen.add(name)
-        yield name, numbers.split(",") if name else ["no name"], text
-
-
-def _number(text: str) -> float:
-    """A number as a person writes it: Python would read 1_000 as one, too."""
-    if "_" in text:
-        raise ValueError
-    return float(text)
-
-
-def _check_side_files(shape: Shape, output: Path, *, force: bool) -> None:
-    """Refuse files that are to be written beside the output, where they are there already or there is no such place."""
-    if output == outputs.STANDARD_OUTPUT:
+def _read(path: Path, file: Path, *, force: bool) -> Shape:
+    """A shape that can be written to the file."""
+    shape = inputs.read_shape(path)
+    if file == outputs.STANDARD_OUTPUT:
         for name in shape.side_files(shape.path.stem):
             raise ArgumentError(
                 f"standard output takes one file, but this {shape.format} is written with '{name}' beside it: "
                 "name an output file"
             )
-    for name in shape.side_files(output.stem):
-        outputs.check_output(output.parent / name, force=force)
+        return shape
+    outputs.check_ending(file, shape.extensions, f"a bent {shape.format} file (formats are not converted)")
+    for name in shape.side_files(file.stem):
+        outputs.check_output(file.parent / name, force=force)
+    return shape
 
 
-def _write(shape: Shape, result: Deformation, output: Path, *, force: bool) -> tuple[list[str], list[str]]:
-    """Write the shape; return the files written, and warnings of files beside it that were kept."""
-    if output == outputs.STANDARD_OUTPUT:
-        data, _ = shape.encode(result.positions, maps=result.maps)
-        sys.stdout.buffer.write(data)
-        sys.stdout.buffer.flush()
-        return [], []
-    return outputs.write_shape(shape, output, result.positions, maps=result.maps, force=force)
+def _warnings(session: Session, file: Path | None, shapes: Sequence[Shape]) -> list[str]:
+    """What a person should know of the control points before anything is fitted."""
+    warnings = list(session.notes)
+    for shape in shapes:
+        warnings += inputs.check_points(session, file, shape)
+    still = session.points.targets.tolist() == session.points.sources.tolist() and not session.points.is_oriented
+    if still:
+        warnings.append("no control point is moved, so that the output is the input")
+    return warnings
+
+
+def _bent(shape: Shape, file: Path, map: Map, stages: Stages, *, check: bool, force: bool) -> dict[str, Any]:
+    """Bend one shape and write it; what is to be told of it."""
+    from neuralmls.cli import summary
+
+    with stages.stage("bind") as report:
+        bound = map.bind(shape, progress=report)
+    with stages.stage("move") as report:
+        positions, maps = map.frame(bound, return_maps=shape.has_normals, progress=report)
+        told = map.report(shape)
+    advice = []
+    if check:
+        with stages.stage("check"):
+            advice = map.advise(shape)
+    with stages.stage("write"):
+        if file == outputs.STANDARD_OUTPUT:
+            sys.stdout.buffer.write(shape.encode(positions, maps=maps)[0])
+            sys.stdout.buffer.flush()
+            written, kept = [], []
+        else:
+            written, kept = outputs.write_shape(shape, file, positions, maps=maps, force=force)
+    return summary.summary(shape, file, map, told, advice if check else None, written, kept)
+
+
+def _tell(
+    results: Sequence[dict[str, Any]],
+    stages: Stages,
+    warnings: Sequence[str],
+    points: Path | None,
+    *,
+    json: bool,
+    quiet: bool,
+    verbose: bool,
+) -> None:
+    from neuralmls.cli import summary
+
+    to_stdout = any(told["output"] == str(outputs.STANDARD_OUTPUT) for told in results)
+    out = sys.stderr if to_stdout else sys.stdout
+    for told in results:
+        told["warnings"] = [*warnings, *told["warnings"]]
+        told["seconds"] = stages.seconds
+    if json:
+        console.document(results[0] if len(results) == 1 else {"results": list(results)}, out)
+    elif not quiet:
+        for told in results:
+            summary.show(told, everything=verbose, file=out)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 from shlex import quote
+from time import perf_counter
 
 import click
 
 from neuralmls.cli import console, options, outputs
 from neuralmls.cli.sample import sample_files, write_sample
-from neuralmls.cli.stages import Stages
-from neuralmls.cli.weights import Kind, WeightsChoice
+from neuralmls.cli.settings import Kind
 from neuralmls.errors import FileError, NeuralMLSError
 
 RESULTS: dict[str, Kind] = {"neural": "neural", "classic": "inverse-distance"}
@@ -33,21 +33,22 @@ def demo(*, output: Path, force: bool) -> None:
         outputs.check_output(file, force=force)
     points = sample_files(chair)[2]
 
-    from neuralmls.cli.deformation import deformed as deform
-    from neuralmls.cli.session import Settings
-    from neuralmls.control_points import ControlPoints
+    from neuralmls.session import Session
     from neuralmls.shape import read
 
     write_sample("chair", chair)
-    source, control_points = read(chair), ControlPoints.read(points)
+    source, session = read(chair), Session.read(points)
+    control_points = session.points
     said = [(str(chair), "the chair as it is"), (str(points), f"its {len(control_points)} control points and targets")]
     for name, kind in RESULTS.items():
-        stages = Stages()
-        result = deform(source, control_points, Settings(WeightsChoice(kind), 1.0, "rigid"), stages)
-        source.write(deformed[name], result.positions, maps=result.maps)
-        handles = "onto" if result.adherence == 1 else "near"
-        seconds = sum(stages.seconds.values())
-        said.append((str(deformed[name]), f"bent with {name} weights, {handles} all targets, {seconds:.2f} s"))
+        start = perf_counter()
+        map = session.replace(weights=kind).fit(source)
+        positions, maps = map.frame(map.bind(source), return_maps=source.has_normals)
+        source.write(deformed[name], positions, maps=maps)
+        handles = "onto" if map.report(source).handles == "exact" else "near"
+        said.append(
+            (str(deformed[name]), f"bent with {name} weights, {handles} all targets, {perf_counter() - start:.2f} s")
+        )
     missing = None
     try:
         _draw([chair, *deformed.values()], points, picture)

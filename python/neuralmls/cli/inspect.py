@@ -16,7 +16,7 @@ from neuralmls.cli import console, options
 @options.json
 def inspect(*, shape: Path, json: bool) -> None:
     """Show what is in a file, and what a deformation will carry over."""
-    from neuralmls.cli.deformation import longest_side
+    from neuralmls.cli.inputs import longest_side
     from neuralmls.shape import read
 
     source = read(shape)

@@ -17,6 +17,7 @@ BAD_DATA, WRONG_USE, INTERRUPTED = 1, 2, 130
 
 COMMANDS = (
     "deform",
+    "fit",
     "edit",
     "inspect",
     "points",

@@ -19,6 +19,7 @@ force = click.option("--force", is_flag=True, help="Overwrite files that are the
 json = click.option("--json", is_flag=True, help="As JSON, for machines.")
 quiet = click.option("--quiet", "-q", is_flag=True, help="Say nothing, show no progress bar.")
 shape = click.argument("shape", type=PATH)
+shapes = click.argument("shapes", metavar="SHAPE...", type=PATH, nargs=-1, required=True)
 
 
 def output(help: str) -> Decorator[Any]:
@@ -26,9 +27,19 @@ def output(help: str) -> Decorator[Any]:
     return click.option("--output", "-o", type=PATH, required=True, help=help)
 
 
-def points(help: str) -> Decorator[Any]:
-    """Return the option that names the file of control points, which the command cannot do without."""
-    return click.option("--points", type=PATH, required=True, help=help)
+def session(function: Function) -> Function:
+    """Add the options that name the files of control points."""
+    for option in (
+        click.option("--by-order", is_flag=True, help="Join the two files by order, whatever the names."),
+        click.option("--targets", type=PATH, help="A second file: where the control points of the first go, by name."),
+        click.option(
+            "--points",
+            type=PATH,
+            help="The control points and their targets: a session, a CSV, or landmarks of another tool.",
+        ),
+    ):
+        function = option(function)
+    return function
 
 
 def names(text: str, known: Iterable[str]) -> list[str]:
@@ -44,13 +55,3 @@ def names(text: str, known: Iterable[str]) -> list[str]:
         if name not in expected:
             raise ArgumentError(f"--methods: expected names out of {', '.join(expected)}, found '{name}'")
     return found
-
-
-def temperature(function: Function) -> Function:
-    """Add the temperature."""
-    return click.option(
-        "--temperature",
-        type=float,
-        default=1.0,
-        help="Of the softmax: below 1 parts move more apart, above 1 more together.",
-    )(function)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +18,29 @@ if TYPE_CHECKING:
 STANDARD_OUTPUT = Path("-")
 
 
+def of_shapes(shapes: Sequence[Path], output: Path) -> list[Path]:
+    """Return the file to write for each shape: `output` itself for one, else files of their names in that folder.
+
+    Raises
+    ------
+    ArgumentError
+        Two of them have the same name, or several are to go to standard output.
+    FileError
+        The folder cannot be made.
+    """
+    in_folder = len(shapes) > 1 or output.is_dir()
+    if not in_folder:
+        return [output]
+    if output == STANDARD_OUTPUT:
+        raise ArgumentError("standard output takes one file: name a folder for several shapes")
+    names = [path.name for path in shapes]
+    for path in shapes:
+        if names.count(path.name) > 1:
+            raise ArgumentError(f"{output}: two shapes are called '{path.name}', and would be one file there")
+    make_folder(output)
+    return [output / name for name in names]
+
+
 def check_output(path: Path, *, force: bool, inputs: Iterable[Path] = ()) -> None:
     """Refuse a path that is a folder, is in none or in one that is not writable, or has a file already.
 
@@ -28,6 +51,8 @@ def check_output(path: Path, *, force: bool, inputs: Iterable[Path] = ()) -> Non
     FileError
         Nothing can be written there.
     """
+    if path == STANDARD_OUTPUT:
+        return
     for other in inputs:
         if same_file(path, other) and not force:
             raise ArgumentError(f"{path}: the output is the input itself; --force overwrites it")

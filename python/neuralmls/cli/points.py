@@ -8,7 +8,7 @@ from shlex import quote
 
 import click
 
-from neuralmls.cli import console, options, outputs
+from neuralmls.cli import console, inputs, options, outputs
 
 
 @click.command()
@@ -28,15 +28,12 @@ def points(*, shape: Path, output: Path, count: int, seed: int, quiet: bool, for
     outputs.check_output(output, force=force, inputs=[shape])
 
     from neuralmls.arrays import as_count
-    from neuralmls.cli.deformation import check_size, longest_side
     from neuralmls.control_points import ControlPoints
     from neuralmls.placement import farthest_points
-    from neuralmls.shape import read
 
     as_count("seed", seed, 0, 2**64 - 1)
     as_count("count", count, 1, 1000)
-    source = read(shape)
-    check_size(source)
+    source = inputs.read_shape(shape)
     placed = ControlPoints(farthest_points(source.positions, source.faces, count, seed=seed))
     placed.write(output)
     if quiet:
@@ -45,6 +42,6 @@ def points(*, shape: Path, output: Path, count: int, seed: int, quiet: bool, for
     zeros = ",0" * (placed.dimension - 1)
     console.line(
         f"Try: neuralmls deform {quote(str(shape))} --points {quote(str(output))} -o moved{shape.suffix} "
-        f"--move p1={longest_side(source) / 5:.2g}{zeros}",
+        f"--move p1={inputs.longest_side(source) / 5:.2g}{zeros}",
         sys.stdout,
     )

@@ -6,20 +6,19 @@ import difflib
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from neuralmls.cli import console, options, outputs
+from neuralmls.cli import console, inputs, options, outputs, settings
 from neuralmls.cli.stages import Stages
-from neuralmls.cli.weights import WeightsChoice, weights_options
 from neuralmls.errors import ArgumentError
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from neuralmls.control_points import ControlPoints
+    from neuralmls.session import Session
     from neuralmls.shape import Shape
 
 
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
     "--points", type=options.PATH, help="Control points: balls, on the first shape with arrows to the targets."
 )
 @click.option("--heat", metavar="NAME", help="Colour the first shape by this control point's weight.")
-@weights_options
+@settings.settings_options(*settings.WEIGHTS)
 @options.quiet
 @options.force
 def render(
@@ -39,8 +38,7 @@ def render(
     output: Path,
     points: Path | None,
     heat: str | None,
-    choice: WeightsChoice,
-    temperature: float,
+    said: dict[str, Any],
     quiet: bool,
     force: bool,
 ) -> None:
@@ -54,50 +52,44 @@ def render(
     outputs.check_ending(output, ("png",), "a picture")
     outputs.check_output(output, force=force, inputs=[*shapes, *([points] if points else [])])
 
-    from neuralmls.arrays import as_number
-    from neuralmls.cli.deformation import check_points, longest_side
-    from neuralmls.control_points import ControlPoints
     from neuralmls.figures.render import Panel
     from neuralmls.figures.render import render as draw
     from neuralmls.shape import read
 
-    as_number("temperature", temperature, 0)
-    choice.check()
     stages = Stages(quiet=quiet)
+    session = None if points is None else inputs.settings_of(said, inputs.read_session(points))
     sources = [read(path) for path in shapes]
     for source in sources:
-        longest_side(source)  # refuses what has no size that a number could hold
-    control_points = None if points is None else ControlPoints.read(points)
-    if points is not None and control_points is not None:
-        for sentence in check_points(control_points, points, sources[0]):
+        inputs.longest_side(source)  # refuses what has no size that a number could hold
+    if session is not None:
+        for sentence in inputs.check_points(session, points, sources[0]):
             console.warning(sentence)
     values: list[NDArray[np.float64] | None] = [None] * len(sources)
-    if control_points is not None and heat is not None:
-        values[0] = _weights_of(heat, sources[0], control_points, choice, temperature, stages)
+    if session is not None and heat is not None:
+        values[0] = _weights_of(heat, sources[0], session, stages)
     panels = [
         Panel(visible, source.positions, source.faces, weights=value)
         for visible, source, value in zip(_titles(shapes), sources, values, strict=True)
     ]
-    draw(panels, output, control_points=control_points)
+    draw(panels, output, control_points=None if session is None else session.points)
     if not quiet:
         console.line(f"{output}: {', '.join(_titles(shapes))}", sys.stdout)
 
 
-def _weights_of(
-    name: str, shape: Shape, points: ControlPoints, choice: WeightsChoice, temperature: float, stages: Stages
-) -> NDArray[np.float64]:
+def _weights_of(name: str, shape: Shape, session: Session, stages: Stages) -> NDArray[np.float64]:
     """The weight of one control point at each vertex."""
-    from neuralmls.cli.deformation import check_size
     from neuralmls.weights import softmax
 
-    if name not in points.names:
-        nearest = difflib.get_close_matches(name, points.names, n=1, cutoff=0.0)[0]
+    names = session.points.names
+    if name not in names:
+        nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.0)[0]
         raise ArgumentError(f"--heat: there is no control point '{name}'; the nearest name is '{nearest}'")
-    check_size(shape)
-    with stages.stage(choice.stage) as report:
-        function = choice.make(points.sources, shape, report)
+    inputs.check_size(shape)
+    with stages.stage("train") as report:
+        weights = session.fit(shape, progress=report).weights
     with stages.stage("bind") as report:
-        return softmax(function.logits(shape.positions, progress=report), temperature)[:, points.names.index(name)]
+        logits = weights.logits(shape.positions, progress=report)
+        return softmax(logits, session.settings["temperature"])[:, names.index(name)]
 
 
 def _titles(shapes: Sequence[Path]) -> list[str]:

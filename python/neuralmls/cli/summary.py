@@ -2,52 +2,68 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import asdict
 from math import floor, log10
+from pathlib import Path
 from typing import Any, TextIO
 
-import numpy as np
-
 from neuralmls.cli import console
-from neuralmls.cli.deformation import Deformation, longest_side
-from neuralmls.cli.session import Settings
-from neuralmls.control_points import ControlPoints
+from neuralmls.cli.inputs import longest_side
+from neuralmls.map import Map
+from neuralmls.report import Advice, Report
 from neuralmls.shape import Shape
-from neuralmls.weights import InverseDistanceWeights
+from neuralmls.weights import NetworkWeights
 
 MOST = 20  # control points in a summary, unless all are asked for
 
 
-def summary(shape: Shape, points: ControlPoints, settings: Settings, result: Deformation) -> dict[str, Any]:
-    """What was done, lengths in file units. The caller adds the output and the seconds."""
-    choice = settings.choice
-    weights: dict[str, Any] = {"kind": choice.kind}
-    function = result.weights
-    if not isinstance(function, InverseDistanceWeights):
-        weights |= {"loss": function.loss, "steps": function.steps, "seed": choice.seed or 0}
-    else:
-        weights |= {"alpha": function.alpha, "epsilon": function.epsilon}
-    moved = np.linalg.norm(points.targets - points.sources, axis=1)
-    told = [
-        {"name": name, "moved": float(m), "distance_to_target": float(d)}
-        for name, m, d in zip(points.names, moved, result.missed, strict=True)
-    ]
-    for one, turn, off in zip(told, points.turns, result.off, strict=True):
-        if turn is not None:
-            one |= {"turned": turn.degrees, "degrees_to_rotation": float(off), "scaled": turn.scale}
-    return {
+def summary(
+    shape: Shape,
+    output: Path,
+    map: Map,
+    report: Report,
+    advice: Sequence[Advice] | None,
+    files: list[str],
+    kept: list[str],
+) -> dict[str, Any]:
+    """What was done, lengths in file units. The caller adds the seconds."""
+    session = map.session
+    weights: dict[str, Any] = dict(session.settings["weights"])
+    if isinstance(map.weights, NetworkWeights):
+        weights |= {"loss": map.weights.loss, "steps": map.weights.steps}
+    told = []
+    for i, name in enumerate(report.names):
+        moved, distance = float(report.moved[i]), float(report.distance_to_target[i])
+        one: dict[str, Any] = {"name": name, "moved": moved, "distance_to_target": distance}
+        orientation = report.orientations[i]
+        if orientation is not None:
+            one |= dict(zip(("oriented", "degrees_to_rotation", "scaled"), orientation, strict=True))
+        told.append(one)
+    document: dict[str, Any] = {
         "input": str(shape.path),
+        "output": str(output),
+        "files": files,
         "format": shape.format,
         "vertices": len(shape.positions),
         "triangles": 0 if shape.faces is None else len(shape.faces),
         "longest_side": longest_side(shape),
         "weights": weights,
-        "transform": settings.transform,
-        "temperature": settings.temperature,
-        "adherence": result.adherence,
-        "kept_soft": result.kept_soft,
-        "session": settings.session,
+        "transform": session.settings["transform"],
+        "temperature": session.settings["temperature"],
+        "handles": session.settings["handles"],
+        "arrival": report.handles,
+        "soft": report.soft,
         "control_points": told,
+        "warnings": [*report.warnings, *kept],
     }
+    if advice is not None:
+        # Of handles that do not arrive it is told once.
+        short = any(one.kind == "misses" for one in advice)
+        arrival = [w for w in report.warnings if not (short and w.startswith("control points do not arrive"))]
+        document["advice"] = [asdict(one) for one in advice]
+        document["warnings"] = [*arrival, *(one.sentence for one in advice), *kept]
+    return document
 
 
 def show(told: dict[str, Any], *, everything: bool, file: TextIO) -> None:
@@ -57,14 +73,14 @@ def show(told: dict[str, Any], *, everything: bool, file: TextIO) -> None:
     if told["triangles"]:
         vertices += f", in {told['triangles']:,} triangles"
     count = sum(point["moved"] > 0 for point in points)
-    turned = sum("turned" in point for point in points)
+    oriented = sum("oriented" in point for point in points)
     console.line(f"{told['input']} -> {', '.join(told['files'] or [told['output']])}", file)
     console.pairs(
         [
             ("vertices", vertices),
             (
                 "control points",
-                f"{len(points):,}, {count:,} of them moved" + (f", {turned:,} turned" if turned else ""),
+                f"{len(points):,}, {count:,} of them moved" + (f", {oriented:,} turned" if oriented else ""),
             ),
             ("weights", _weights(weights)),
             ("transform", f"{told['transform']}, temperature {told['temperature']:g}"),
@@ -76,40 +92,39 @@ def show(told: dict[str, Any], *, everything: bool, file: TextIO) -> None:
     )
     shown = points
     if not everything and len(points) > MOST:
-        shown = sorted(points, key=lambda point: ("turned" not in point, -point["distance_to_target"]))[:MOST]
+        shown = sorted(points, key=lambda point: ("oriented" not in point, -point["distance_to_target"]))[:MOST]
     rows = [
         (
             point["name"],
             _length(point["moved"], side),
             _length(point["distance_to_target"], side),
             f"{100 * point['distance_to_target'] / side:.2f} %",
-            *(_turn(point) if turned else ()),
+            *(_orientation(point) if oriented else ()),
         )
         for point in shown
     ]
     print(file=file)
     titles = ["control point", "moved by", "off its target by", "of the size"]
-    titles += ["turned by", "off its rotation by"] if turned else []
+    titles += ["turned by", "off its rotation by"] if oriented else []
     console.table(titles, rows, tuple(range(1, len(titles))), file)
     if len(shown) < len(points):
-        first = "turned, then the farthest" if turned else "farthest"
+        first = "turned, then the farthest" if oriented else "farthest"
         console.line(f"  the {MOST} {first} from their targets; --verbose shows all {len(points):,}", file)
 
 
-def _turn(point: dict[str, Any]) -> tuple[str, str]:
+def _orientation(point: dict[str, Any]) -> tuple[str, str]:
     """By how much a control point is turned, and how much of that is missing."""
-    if "turned" not in point:
+    if "oriented" not in point:
         return "", ""
     scaled = f", scaled {point['scaled']:g}" if point["scaled"] != 1 else ""
-    return f"{point['turned']:.4g} deg{scaled}", f"{point['degrees_to_rotation']:.1f} deg"
+    return f"{point['oriented']:.4g} deg{scaled}", f"{point['degrees_to_rotation']:.1f} deg"
 
 
 def _handles(told: dict[str, Any]) -> list[tuple[str, str]]:
     """What took the control points to their targets, or why nothing did; one thing a line."""
-    adherence, kept_soft = told["adherence"], told["kept_soft"]
-    named = {0.0: "soft", 1.0: "exact"}.get(adherence, f"adherence {adherence:g}")
-    lines = [named] if kept_soft is None else ["left soft:", *kept_soft.split("; ")]
-    if told["session"] is not None:
+    soft = told["soft"]
+    lines = [told["arrival"]] if soft is None else ["left soft:", *soft.split("; ")]
+    if told.get("session"):
         lines.append(f"settings of {told['session']}")
     return list(zip(["handles", *[""] * len(lines)], lines, strict=False))
 

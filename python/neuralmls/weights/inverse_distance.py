@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from neuralmls import _core
-from neuralmls.arrays import Progress, as_box, as_number, as_points, box_around
+from neuralmls.arrays import as_box, as_number
+from neuralmls.weights.function import Weights, as_control_points
 
 
-class InverseDistanceWeights:
+class InverseDistanceWeights(Weights):
     """The classic weights `w_i = 1 / (d_i^(2 alpha) + epsilon)`, normalised, as logits `-log(d_i^(2 alpha) + epsilon)`.
 
     Parameters
@@ -38,6 +38,8 @@ class InverseDistanceWeights:
     [[0.75, 0.25]]
     """
 
+    _kind = "inverse-distance"
+
     def __init__(
         self,
         control_points: ArrayLike,
@@ -46,25 +48,22 @@ class InverseDistanceWeights:
         epsilon: float = 0.0,
         bounds: ArrayLike | None = None,
     ) -> None:
-        self._p = as_points("control_points", control_points).copy()
-        self._p.flags.writeable = False
-        self.alpha = as_number("alpha", alpha, 0)
-        self.epsilon = as_number("epsilon", epsilon, 0, open_low=False)
-        self._half = (box_around(self._p) if bounds is None else as_box(bounds, self._p.shape[1]))[1]
-        self.logits(self._p[:0])  # refuses what the core refuses now, not at the first use
+        p = as_control_points(control_points)
+        self._core = _core.Weights.inverse_distance(
+            p,
+            None if bounds is None else as_box(bounds, p.shape[1]),
+            as_number("alpha", alpha, 0),
+            as_number("epsilon", epsilon, 0, open_low=False),
+        )
 
     @property
-    def control_points(self) -> NDArray[np.float64]:
-        """The control points at rest, (m, d)."""
-        return self._p
+    def alpha(self) -> float:
+        """The exponent of the squared distance."""
+        assert self._core.parameters is not None
+        return self._core.parameters[0]
 
-    def logits(self, x: ArrayLike, *, progress: Progress | None = None) -> NDArray[np.float32]:
-        """Return the logits of the points `x` (n, d): (n, m); +infinity on a control point if epsilon is 0.
-
-        Raises
-        ------
-        ArgumentError
-            `x` does not hold finite points of the control points' dimension.
-        """
-        points = as_points("x", x, self._p.shape[1])
-        return _core.inverse_distance_logits(points, self._p, self._half, self.alpha, self.epsilon, progress)
+    @property
+    def epsilon(self) -> float:
+        """What caps the weight near a control point."""
+        assert self._core.parameters is not None
+        return self._core.parameters[1]

@@ -5,12 +5,14 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 
 from neuralmls import _core
-from neuralmls.arrays import Progress, as_box, as_count, as_number, as_points, box_around
-from neuralmls.weights.network import NetworkWeights
+from neuralmls.arrays import Progress, as_box, as_count, as_number
+from neuralmls.weights.function import NetworkWeights, as_control_points
 
 
 class NeuralWeights(NetworkWeights):
     """A network `d -> width -> width -> m` whose outputs are the logits; made by `fit` or `load`."""
+
+    _kind = "neural"
 
     @classmethod
     def fit(
@@ -41,7 +43,7 @@ class NeuralWeights(NetworkWeights):
         width : int, 1 to 16384
             Neurons a hidden layer: 1024 in the paper.
         steps : int, optional
-            A fixed number of steps: 48 in the paper. Without it, until every control point has 0.9 of the weight
+            A fixed number of steps: 48 in the published code. Without it, until every control point has 0.9 of the weight
             at its own place (at most 2000), because handles that do not own their place stop short.
         rate : float > 0
             Adam's learning rate.
@@ -61,25 +63,12 @@ class NeuralWeights(NetworkWeights):
         >>> weights.logits([[-0.9, 0.1]]).argmax()
         np.int64(0)
         """
-        p = as_points("control_points", control_points)
-        check_training(seed, width, steps)
-        as_number("rate", rate, 0)
-        if fourier_sigma is not None:
-            as_number("fourier_sigma", fourier_sigma, 0)
-        centre, half = box_around(p) if bounds is None else as_box(bounds, p.shape[1])
-        network, losses, loss = _core.fit(p, centre, half, width, steps, rate, seed, fourier_sigma, progress)
-        return cls(p, network, losses, loss)
-
-
-def check_training(seed: int, width: int, steps: int | None) -> None:
-    """Refuse what `NeuralWeights.fit` would.
-
-    Raises
-    ------
-    ArgumentError
-        A number is out of its range.
-    """
-    as_count("seed", seed, 0, 2**64 - 1)
-    as_count("width", width, 1, 1 << 14)
-    if steps is not None:
-        as_count("steps", steps, 1, 1_000_000)
+        p = as_control_points(control_points)
+        as_count("seed", seed, 0, 2**64 - 1)
+        as_count("width", width, 1, 1 << 14)
+        if steps is not None:
+            as_count("steps", steps, 1, 1_000_000)
+        rate = as_number("rate", rate, 0)
+        sigma = None if fourier_sigma is None else as_number("fourier_sigma", fourier_sigma, 0)
+        box = None if bounds is None else as_box(bounds, p.shape[1])
+        return cls._of(_core.Weights.neural(p, box, width, steps, rate, seed, sigma, progress))

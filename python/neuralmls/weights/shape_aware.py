@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from neuralmls import _core
 from neuralmls.arrays import Progress, as_box, as_count, as_points, box_around
 from neuralmls.errors import ArgumentError
-from neuralmls.weights.network import NetworkWeights
+from neuralmls.weights.function import NetworkWeights, as_control_points
 from neuralmls.weights.softmax import softmax
 from neuralmls.weights.surface_graph import SurfaceGraph
 
@@ -34,6 +34,8 @@ LEAST_SHARE = 1e-12  # of walks: fewer are rounding
 
 class ShapeAwareWeights(NetworkWeights):
     """A network whose logits follow the shape: parts near in space but far along the shape move apart."""
+
+    _kind = "shape-aware"
 
     @classmethod
     def fit(
@@ -96,19 +98,20 @@ class ShapeAwareWeights(NetworkWeights):
         >>> ShapeAwareWeights.fit(p, legs, lines).logits([[0.1, 0.3]]).argmax()
         np.int64(1)
         """
-        p = as_points("control_points", control_points)
+        p = as_control_points(control_points)
         points = as_points("x", x, p.shape[1])
         if not len(points):
             raise ArgumentError("x: expected at least one point, found none")
         as_count("seed", seed, 0, 2**64 - 1)
-        centre, half = box_around(points) if bounds is None else as_box(bounds, p.shape[1])
-        origin = np.array(centre)
+        box = as_box(box_around(points) if bounds is None else bounds, p.shape[1])
+        half = float((box[1] - box[0]).max()) / 2
+        origin = box[0] + (box[1] - box[0]) / 2
         triangles = None if faces is None else np.asarray(faces)
         samples, labels = lessons((p - origin) / half, (points - origin) / half, triangles)
-        network, losses, loss = _core.fit(
-            p, centre, half, WIDTH, STEPS, RATE, seed, None, progress, (samples * half + origin, labels, BATCH)
+        core = _core.Weights.shape_aware(
+            p, box, samples * half + origin, labels, BATCH, SOFTNESS, WIDTH, STEPS, RATE, seed, progress
         )
-        return cls(p, _sharpened(network, SOFTNESS), losses, loss)
+        return cls._of(core)
 
 
 def lessons(p: Array, x: Array, faces: NDArray[Any] | None) -> tuple[Array, NDArray[np.float32]]:
@@ -130,11 +133,3 @@ def shape_logits(
     logits = share * power * met - (1 - share) * EXPONENT * straight
     below = logits.max(axis=1, keepdims=True) - logits
     return np.asarray(-np.minimum(below, kept) - TAIL * np.log1p(np.maximum(below - kept, 0) / TAIL))
-
-
-def _sharpened(network: _core.Network, by: float) -> _core.Network:
-    """The network with logits times a number."""
-    layers = network.layers
-    weight, bias = layers[2]
-    layers[2] = (weight * np.float32(by), bias * np.float32(by))
-    return _core.Network(network.dim, network.centre, network.half, network.frequencies, layers)

@@ -1,32 +1,30 @@
 //! Advice is silent where all is well, and tells of what was made bad on purpose. The same is tested from Python (tests/test_advice.py).
 
 use super::*;
-use crate::frame::Frame;
-use crate::logits::inverse_distance::InverseDistance;
-use nalgebra::Matrix3;
-use proptest::prelude::*;
+use crate::geometry::Frame;
+use crate::mls::Transform;
+use crate::weights::inverse_distance::InverseDistance;
+use crate::weights::Weights;
 
-/// A line of places from 0 to 1 and classic weights of control points on it.
+/// A line of places from 0 to 1 and inverse-distance weights of control points on it.
 fn line(p: &[f64]) -> Probe {
     let places: Vec<f64> = (0..=200).map(|i| f64::from(i) / 200.0).collect();
     let weights = InverseDistance::new(p, 1, Frame::around(&places, 1), 1.0, 0.0).unwrap();
-    let logits = weights.logits(&Probe::points(&places, 1, 1.0), &mut |_| true).unwrap();
-    let own = weights.logits(p, &mut |_| true).unwrap();
-    Probe::new(p, 1, &places, 1.0, logits, own, Transform::Rigid).unwrap()
+    Probe::new(&Weights::InverseDistance(weights), &places, 1.0, Transform::Rigid, false).unwrap()
 }
 
 #[test]
 fn what_moves_as_one_needs_no_advice() {
     let probe = line(&[0.0, 0.4, 0.6, 1.0]);
     for q in [[0.0, 0.4, 0.6, 1.0], [2.0, 2.4, 2.6, 3.0]] {
-        assert_eq!(probe.advise(&q, 1.0, 0.0).unwrap(), []);
+        assert_eq!(probe.advise(&q, 1.0, &[0.0]).unwrap(), []);
     }
 }
 
 #[test]
 fn a_fold_is_found_between_the_control_points_that_change_places() {
     let probe = line(&[0.0, 0.4, 0.6, 1.0]);
-    let found = probe.advise(&[0.0, 0.7, 0.3, 1.0], 1.0, 0.0).unwrap();
+    let found = probe.advise(&[0.0, 0.7, 0.3, 1.0], 1.0, &[0.0]).unwrap();
     let [Advice { kind: Kind::Folds(part), place, mut near, .. }, ..] = found[..] else {
         panic!("{found:?}")
     };
@@ -39,11 +37,11 @@ fn a_fold_is_found_between_the_control_points_that_change_places() {
 #[test]
 fn a_tear_is_found_and_what_is_said_to_help_does() {
     let probe = line(&[0.0, 0.3, 0.7, 1.0]);
-    let torn = |q: &[f64], t: f64| probe.parts(q, t, 0.0).unwrap().1;
+    let torn = |q: &[f64], t: f64| probe.parts(q, t, &[0.0]).unwrap().1;
     let mut helped = 0;
     for (shift, t) in [(2.0, 0.1), (1.0, 0.1), (1.0, 0.3), (1.0, 0.5)] {
         let q = [0.0, 0.3, 0.7 + shift, 1.0 + shift];
-        let found = probe.advise(&q, t, 0.0).unwrap();
+        let found = probe.advise(&q, t, &[0.0]).unwrap();
         let [Advice { kind: Kind::Torn(stretch), place, near, better }] = found[..] else {
             panic!("{found:?}")
         };
@@ -64,36 +62,8 @@ fn a_tear_is_found_and_what_is_said_to_help_does() {
 #[test]
 fn what_moves_far_from_all_control_points_is_found() {
     let probe = line(&[0.0, 0.1, 0.2]);
-    let found = probe.advise(&[0.0, 0.1, 0.25], 1.0, 0.0).unwrap();
+    let found = probe.advise(&[0.0, 0.1, 0.25], 1.0, &[0.0]).unwrap();
     let ungoverned = found.iter().find(|advice| matches!(advice.kind, Kind::Ungoverned(_))).unwrap();
     assert_eq!((ungoverned.place, ungoverned.near), (200, [2, 2]));
     assert!(matches!(ungoverned.kind, Kind::Ungoverned(far) if (far - 8.0).abs() < 1e-9));
-}
-
-proptest! {
-    #[test]
-    fn stretch_and_determinant_are_those_of_nalgebra(entries in prop::array::uniform9(-3.0f64..3.0)) {
-        let j: [[f64; 3]; 3] = std::array::from_fn(|r| std::array::from_fn(|c| entries[3 * r + c]));
-        let matrix = Matrix3::from_fn(|r, c| j[r][c]);
-        prop_assert!((stretch(&j) - matrix.singular_values().max()).abs() < 1e-6);
-        prop_assert!((determinant(&j, 3) - matrix.determinant()).abs() < 1e-9);
-    }
-}
-
-#[test]
-fn no_place_is_refused() {
-    assert!(Probe::new(&[0.0], 1, &[], 1.0, vec![], vec![0.0], Transform::Rigid).is_err());
-}
-
-#[test]
-fn places_lie_on_the_surface_or_are_points_of_the_cloud() {
-    let x = [0.0, 0.0, 1e6, 1.0, 0.0, 1e6, 0.0, 1.0, 1e6, 3.0, 0.0, 1e6, 0.0, 5.0, 1e6];
-    let on = places(&x, 3, &[[0, 1, 2]], 500).unwrap();
-    assert_eq!(on.len(), 1500);
-    assert!(on
-        .chunks_exact(3)
-        .all(|p| p[2] == 1e6 && p[0] >= -1e-9 && p[1] >= -1e-9 && p[0] + p[1] < 1.0 + 1e-9));
-    assert_eq!(places(&x, 3, &[], 10).unwrap(), x);
-    assert_eq!(places(&x, 3, &[], 2).unwrap(), [0.0, 0.0, 1e6, 3.0, 0.0, 1e6]);
-    assert!(places(&x, 3, &[[0, 1, 9]], 2).is_err());
 }

@@ -8,7 +8,7 @@ const ALL: [Transform; 3] = [Transform::Rigid, Transform::Similarity, Transform:
 
 fn bound(x: &[f64], p: &[f64], dim: usize, transform: Transform) -> Deformer {
     let weights = InverseDistance::new(p, dim, Frame::IDENTITY, 1.0, 0.0).unwrap();
-    Deformer::new(x.to_vec(), dim, p, weights.logits(x, &mut |_| true).unwrap(), transform).unwrap()
+    Deformer::of_logits(x.to_vec(), dim, p, weights.logits(x, &mut |_| true).unwrap(), transform).unwrap()
 }
 
 fn deform(x: &[f64], p: &[f64], q: &[f64], dim: usize, transform: Transform) -> Vec<f64> {
@@ -112,7 +112,10 @@ fn no_points_are_deformed_to_none() {
 #[test]
 fn refuses_what_does_not_fit() {
     let new = |x: &[f64], p: &[f64], logits: &[f32]| {
-        Deformer::new(x.to_vec(), 2, p, logits.to_vec(), Transform::Rigid).map(drop).unwrap_err().to_string()
+        Deformer::of_logits(x.to_vec(), 2, p, logits.to_vec(), Transform::Rigid)
+            .map(drop)
+            .unwrap_err()
+            .to_string()
     };
     assert!(new(&[0.0; 4], &[], &[]).contains("at least one"));
     assert!(new(&[0.0; 4], &[0.0; 2], &[0.0]).contains("2 x 1"));
@@ -147,7 +150,7 @@ fn random_frames() -> Vec<(Deformer, Vec<f64>)> {
                 let near: Vec<f64> = p.iter().zip(&noise).map(|(p, e)| p + e).collect();
                 let mirrored =
                     p.iter().enumerate().map(|(k, p)| if k % dim == 0 { -p } else { *p }).collect();
-                let new = || Deformer::new(x.clone(), dim, &p, logits.clone(), transform).unwrap();
+                let new = || Deformer::of_logits(x.clone(), dim, &p, logits.clone(), transform).unwrap();
                 frames.extend([(new(), near), (new(), mirrored)]);
             }
         }
@@ -161,10 +164,10 @@ fn one_by_one<const D: usize>(deformer: &Deformer, pose: Pose<'_>, temperature: 
         points.chunks_exact(D).map(|point| deformer.frame.enter(point)).collect()
     };
     let (p, q) = (enter(&deformer.p), enter(pose.q));
-    let turned = pose.turns.map_or_else(Vec::new, |turns| turned(turns, &p));
-    let handles = Handles::with_turned(&p, &q, turned, deformer.transform);
+    let oriented = pose.orientations.map_or_else(Vec::new, |given| oriented(given, &p));
+    let mls = Mls::with_oriented(&p, &q, oriented, deformer.transform);
     let (x, logits, frame) = (&deformer.x, &deformer.logits, deformer.frame);
-    let motion = Motion { x, logits, frame, temperature, handles, lanes: None };
+    let motion = Motion { x, logits, frame, temperature, mls, batch: None };
     let (mut y, mut maps) = (vec![0.0; x.len()], vec![0.0; x.len() * D]);
     motion.block(0, &mut y, &mut maps);
     (y, maps)
@@ -240,11 +243,11 @@ fn another_transform_gives_the_frames_of_a_deformer_of_that_transform() {
     let x: Vec<f64> = (0..3000).map(|i| (f64::from(i) * 0.7).sin()).collect();
     let p: Vec<f64> = (0..15).map(|i| (f64::from(i) * 1.9).cos()).collect();
     let q: Vec<f64> = p.iter().map(|c| 1.3 * c + 0.1 * (5.0 * c).sin()).collect();
-    let mut turned = bound(&x, &p, 3, Transform::Rigid);
+    let mut changed = bound(&x, &p, 3, Transform::Rigid);
     for transform in [Transform::Rigid, Transform::Similarity, Transform::Affine, Transform::Rigid] {
-        turned.set_transform(transform);
+        changed.set_transform(transform);
         for _ in 0..3 {
-            let found = turned.deform(&q, 0.7, false, &mut |_| true).unwrap().positions;
+            let found = changed.deform(&q, 0.7, false, &mut |_| true).unwrap().positions;
             assert_eq!(
                 found,
                 bound(&x, &p, 3, transform).deform(&q, 0.7, false, &mut |_| true).unwrap().positions
@@ -262,11 +265,11 @@ fn turns(m: usize, dim: usize, degrees: f64) -> Vec<f64> {
 }
 
 #[test]
-fn turned_frames_are_those_of_the_points_one_by_one() {
+fn oriented_frames_are_those_of_the_points_one_by_one() {
     for (deformer, q) in random_frames() {
         let turns = turns(q.len() / deformer.dim, deformer.dim, 50.0);
         for t in [0.1, 1.0, 100.0] {
-            let pose = Pose { q: &q, turns: Some(&turns) };
+            let pose = Pose { q: &q, orientations: Some(&turns) };
             let fast = deformer.deform(pose, t, true, &mut |_| true).unwrap();
             let (y, maps) = match deformer.dim {
                 2 => one_by_one::<2>(&deformer, pose, t),
@@ -286,11 +289,12 @@ fn turns_that_turn_nothing_change_nothing() {
     for (deformer, q) in random_frames() {
         let m = q.len() / deformer.dim;
         let none = vec![f64::NAN; m * deformer.dim * deformer.dim];
-        let silent = deformer.deform(Pose { q: &q, turns: Some(&none) }, 1.0, true, &mut |_| true).unwrap();
+        let silent =
+            deformer.deform(Pose { q: &q, orientations: Some(&none) }, 1.0, true, &mut |_| true).unwrap();
         let plain = deformer.deform(&q, 1.0, true, &mut |_| true).unwrap();
         assert_eq!((silent.positions, silent.maps), (plain.positions, plain.maps));
         let held = turns(m, deformer.dim, 0.0);
-        let pose = Pose { q: &deformer.p, turns: Some(&held) };
+        let pose = Pose { q: &deformer.p, orientations: Some(&held) };
         assert_eq!(deformer.deform(pose, 1.0, true, &mut |_| true).unwrap().positions, deformer.x);
     }
 }
@@ -299,9 +303,9 @@ fn turns_that_turn_nothing_change_nothing() {
 fn turns_that_do_not_fit_are_refused() {
     let deformer = bound(&[0.0; 6], &[1.0; 3], 3, Transform::Rigid);
     for turns in [vec![1.0; 9], vec![f64::NAN; 8]] {
-        let pose = Pose { q: &[2.0; 3], turns: Some(&turns) };
+        let pose = Pose { q: &[2.0; 3], orientations: Some(&turns) };
         let error = deformer.deform(pose, 1.0, false, &mut |_| true).map(drop).unwrap_err();
-        assert!(error.to_string().starts_with("turns: "), "{error}");
+        assert!(error.to_string().starts_with("orientations: "), "{error}");
     }
 }
 

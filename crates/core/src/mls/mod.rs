@@ -3,24 +3,25 @@
 //! `y = M (x - p*) + q*`, with the weighted centroids `p* = sum w_i p_i`, `q* = sum w_i q_i`, and `M` the map of its kind
 //! that minimises `sum w_i |M (p_i - p*) - (q_i - q*)|^2`. Schaefer, McPhail, Warren 2006 (2D); Zhu, Gortler 2007 (3D).
 //! What differs from them: `M` is always a rotation (never a reflection), and where the weighted control points do not
-//! determine it, it follows the one map of its kind that fits all control points with equal weights ([`Anchor`]).
+//! determine it, it follows the one map of its kind that fits all control points with equal weights ([`Global`]).
 
 mod affine;
-pub(crate) mod lanes;
+pub(crate) mod batch;
+
 mod matrix;
 mod moments;
+mod oriented;
 mod rotation;
 mod similarity;
-mod turned;
 
 pub use matrix::Matrix;
 pub use rotation::best_rotation;
 
-use crate::frame::Frame;
+use crate::geometry::Frame;
 use crate::softmax::Dominant;
 use moments::Moments;
-use turned::Turned;
-pub(crate) use turned::{check as check_turns, turned};
+use oriented::Oriented;
+pub(crate) use oriented::{check as check_orientations, oriented, squares};
 
 /// How much the global map counts against the local one, relative to its size: enough to decide what is open, too little to
 /// be seen where anything is determined.
@@ -39,18 +40,18 @@ pub enum Transform {
 
 /// The moved control points, with what is the same for every point of a shape: the map that fits all of them with equal
 /// weights.
-pub struct Handles<'a, const D: usize> {
+pub struct Mls<'a, const D: usize> {
     p: &'a [[f64; D]],
     q: &'a [[f64; D]],
-    turned: Vec<Turned<D>>,
+    oriented: Vec<Oriented<D>>,
     transform: Transform,
-    anchor: Anchor<D>,
+    anchor: Global<D>,
     undecided: f64,
 }
 
 /// The global fit: what a local map follows where the control points around it leave something open.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Anchor<const D: usize> {
+pub struct Global<const D: usize> {
     /// The best rotation of all control points; the identity where even they leave it open.
     pub rotation: Matrix<D>,
     /// The best scale (similarity); 1 where there is none.
@@ -68,70 +69,70 @@ pub struct Local<const D: usize> {
     pub map: Matrix<D>,
 }
 
-impl<'a, const D: usize> Handles<'a, D> {
+impl<'a, const D: usize> Mls<'a, D> {
     /// Fits the anchor. `p` and `q` hold the same number of control points, at least one.
     pub fn new(p: &'a [[f64; D]], q: &'a [[f64; D]], transform: Transform) -> Self {
-        Self::with_turned(p, q, Vec::new(), transform)
+        Self::with_oriented(p, q, Vec::new(), transform)
     }
 
-    /// The same with the control points of which `turned` says how they turn.
-    pub(crate) fn with_turned(
+    /// The same with the control points of which `oriented` says how they turn.
+    pub(crate) fn with_oriented(
         p: &'a [[f64; D]],
         q: &'a [[f64; D]],
-        turned: Vec<Turned<D>>,
+        oriented: Vec<Oriented<D>>,
         transform: Transform,
     ) -> Self {
         debug_assert!(!p.is_empty() && p.len() == q.len());
         let equal = vec![1.0; p.len()];
         let dominant = Dominant { index: 0, second: 1.0 / p.len() as f64 };
         let mut moments = Moments::new(p, q, &equal, dominant, None);
-        let added = turned::add(&mut moments, &turned, &equal, dominant, None);
+        let added = oriented::add(&mut moments, &oriented, &equal, dominant, None);
         let rotation = rotation::anchored(&moments.pq, &matrix::identity());
         added.align(&mut moments, &rotation);
         let scale = similarity::scale(&moments, &rotation, 1.0);
         let mut residuals = Moments::new(p, q, &equal, dominant, Some(&rotation));
-        turned::add(&mut residuals, &turned, &equal, dominant, Some(&rotation));
+        oriented::add(&mut residuals, &oriented, &equal, dominant, Some(&rotation));
         let linear = affine::linear(&residuals, &rotation);
-        Handles { p, q, turned, transform, anchor: Anchor { rotation, scale, linear }, undecided: 0.0 }
+        Mls { p, q, oriented, transform, anchor: Global { rotation, scale, linear }, undecided: 0.0 }
     }
 
     /// Moves by the mean of the rotations that fit nearly as well as the best one, where that is better than others by less than this
     /// part of what it is at rest: so the maps have no jumps. 0: by the best one.
     pub(crate) fn undecided(self, part: f64) -> Self {
-        Handles { undecided: part, ..self }
+        Mls { undecided: part, ..self }
     }
 
     /// The map that fits all control points with equal weights.
-    pub fn anchor(&self) -> &Anchor<D> {
+    pub fn global(&self) -> &Global<D> {
         &self.anchor
     }
 
     /// The same map for many points at a time, in the coordinates of `frame`'s world; where there is a kernel for it (3D).
-    pub(crate) fn lanes(&self, frame: Frame) -> Option<lanes::LaneHandles> {
+    pub(crate) fn batch(&self, frame: Frame) -> Option<batch::BatchMls> {
         if D != 3 || (self.undecided > 0.0 && self.transform != Transform::Affine) {
             return None;
         }
         let three =
             |m: &Matrix<D>| -> Matrix<3> { std::array::from_fn(|r| std::array::from_fn(|c| m[r][c])) };
-        let Anchor { rotation, scale, linear } = &self.anchor;
-        let anchor = Anchor { rotation: three(rotation), scale: *scale, linear: three(linear) };
+        let Global { rotation, scale, linear } = &self.anchor;
+        let anchor = Global { rotation: three(rotation), scale: *scale, linear: three(linear) };
         let pairs = self.p.iter().zip(self.q);
         let points =
             pairs.map(|(p, q)| std::array::from_fn(|k| if k < 3 { p[k] } else { q[k - 3] })).collect();
-        let turned = self.turned.iter().map(|t| Turned {
+        let oriented = self.oriented.iter().map(|t| Oriented {
             index: t.index,
             rotation: three(&t.rotation),
             scale: t.scale,
             square: t.square,
         });
-        Some(lanes::LaneHandles::new(points, turned.collect(), self.transform, anchor, frame))
+        Some(batch::BatchMls::new(points, oriented.collect(), self.transform, anchor, frame))
     }
 
     /// Where the point `x` goes, whose weights `relative` and `dominant` are as [`crate::softmax::relative_weights`] gives them.
     pub fn deform(&self, x: &[f64; D], relative: &[f64], dominant: Dominant) -> Local<D> {
         let base = (self.transform == Transform::Affine).then_some(&self.anchor.linear);
         let mut moments = Moments::new(self.p, self.q, relative, dominant, base);
-        let added = turned::add(&mut moments, &self.turned, relative, dominant, base);
+        let added = oriented::add(&mut moments, &self.oriented, relative, dominant, base);
         let map = match self.transform {
             Transform::Rigid => self.rotation(&moments),
             Transform::Similarity => {
@@ -143,8 +144,8 @@ impl<'a, const D: usize> Handles<'a, D> {
             Transform::Affine => affine::linear(&moments, &self.anchor.linear),
         };
         let arm: [f64; D] = std::array::from_fn(|k| x[k] - moments.p_mean[k]);
-        let turned = matrix::apply(&map, &arm);
-        Local { displacement: std::array::from_fn(|k| turned[k] - arm[k] + moments.shift[k]), map }
+        let moved = matrix::apply(&map, &arm);
+        Local { displacement: std::array::from_fn(|k| moved[k] - arm[k] + moments.shift[k]), map }
     }
 
     /// The rotation that `moments` ask for.

@@ -62,7 +62,7 @@ fn deform<const D: usize>(
 ) -> Local<D> {
     let mut relative = vec![0.0; p.len()];
     let dominant = relative_weights(logits, temperature, &mut relative);
-    Handles::new(p, q, transform).deform(&x, &relative, dominant)
+    Mls::new(p, q, transform).deform(&x, &relative, dominant)
 }
 
 fn close<const D: usize>(a: [f64; D], b: [f64; D], tolerance: f64) -> bool {

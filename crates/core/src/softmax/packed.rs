@@ -13,9 +13,9 @@
 //! as if it had been 6e-8 of itself more or less, and w_second makes the sum of the rounded ones 1 exactly, in double
 //! precision. (A single w_second would put the error of the sum of a thousand weights on one of them.)
 
-use crate::memory::filled;
-use crate::simd::loops::{multiply_add_f32, multiversion_loops};
-use crate::simd::{multiversion, Lanes, Simd};
+use crate::machine::memory::filled;
+use crate::machine::simd::loops::{multiply_add_f32, multiversion_loops};
+use crate::machine::simd::{multiversion, Lanes, Simd};
 
 /// Points in a block.
 pub(crate) const LANES: usize = 16;

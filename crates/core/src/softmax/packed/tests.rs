@@ -27,7 +27,7 @@ fn check(logits: &[f32], m: usize, temperature: f64, tolerance: f64, rows: &[Row
 }
 
 fn check_all(logits: &[f32], m: usize, temperature: f64) {
-    for simd in crate::simd::loops::all() {
+    for simd in crate::machine::simd::loops::all() {
         let mut rows = vec![Row([f32::NAN; LANES]); m + MORE];
         pack(simd, logits, temperature, &mut rows);
         check(logits, m, temperature, 4e-7, &rows);

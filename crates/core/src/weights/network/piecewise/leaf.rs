@@ -1,0 +1,189 @@
+//! The points of a leaf, all of them at once.
+//!
+//! Neurons are evaluated with points in lanes, some rows of layer 2 and all points at a time, so that a weight that was loaded
+//! serves them all. Logits are added up with outputs in lanes, some points at a time: so they come out point by point.
+
+use super::node::{Heads, Level};
+use super::rows::{loads, Row};
+use crate::geometry::LEAF_BLOCKS;
+use crate::machine::simd::{multiversion, Aligned, Lanes, WIDTH};
+
+/// A number of each point of a leaf.
+type Points = [Aligned; LEAF_BLOCKS];
+
+const NO_POINTS: Points = [Aligned::ZERO; LEAF_BLOCKS];
+
+/// Rows of layer 2 at a time, and points of which logits are added up at a time where there are many registers, or few.
+const ROWS: usize = 4;
+const MANY: usize = 16;
+const FEW: usize = 4;
+
+/// Scratch of [`evaluate`]: what the open neurons of both layers are at each point.
+#[derive(Default)]
+pub(super) struct Activations {
+    hidden: Vec<Points>,
+    rows: Vec<Points>,
+}
+
+multiversion! {
+    /// Evaluates what is left over a leaf at its points `x`, and writes the logits of each into its row.
+    pub(super) fn evaluate(
+        leaf: &Level,
+        heads: &Heads,
+        x: &[[Aligned; 3]],
+        activations: &mut Activations,
+        logits: &mut [&mut [f32]],
+    ) = evaluate_body
+}
+
+#[inline(always)]
+fn evaluate_body<L: Lanes>(
+    leaf: &Level,
+    heads: &Heads,
+    x: &[[Aligned; 3]],
+    activations: &mut Activations,
+    logits: &mut [&mut [f32]],
+) {
+    let (columns, rows) = (leaf.sorted.open.len, leaf.bounded.open.len());
+    let Activations { hidden: h, rows: z } = activations;
+    h.resize(columns.max(h.len()), NO_POINTS);
+    z.resize(rows.next_multiple_of(ROWS).max(z.len()), NO_POINTS);
+    let (h, z) = (&mut h[..columns], &mut z[..rows.next_multiple_of(ROWS)]);
+    if L::REGISTERS >= 32 && x.len() == LEAF_BLOCKS {
+        neurons::<L, LEAF_BLOCKS>(leaf, x, 0, h, z);
+    } else {
+        (0..x.len()).for_each(|block| neurons::<L, 1>(leaf, x, block, h, z));
+    }
+
+    let sources = Sources { leaf, heads, x, hidden: h, rows: z };
+    for (group, output) in leaf.part.output.iter().enumerate() {
+        let output = loads::<L>(output);
+        let mut first = 0;
+        while first < logits.len() {
+            first += if L::REGISTERS >= 32 && first + MANY <= logits.len() {
+                sources.add_up::<L, MANY>(group, output, first, logits)
+            } else if first + FEW <= logits.len() {
+                sources.add_up::<L, FEW>(group, output, first, logits)
+            } else {
+                sources.add_up::<L, 1>(group, output, first, logits)
+            };
+        }
+    }
+}
+
+/// The neurons at `B` blocks of points.
+#[inline(always)]
+fn neurons<L: Lanes, const B: usize>(
+    leaf: &Level,
+    x: &[[Aligned; 3]],
+    first: usize,
+    hidden: &mut [Points],
+    rows: &mut [Points],
+) {
+    let mut points = [[L::splat(0.0); 3]; B];
+    for b in 0..B {
+        for k in 0..3 {
+            points[b][k] = L::load(&x[first + b][k].0);
+        }
+    }
+    let columns = &leaf.part.columns;
+    for (j, hidden) in hidden.iter_mut().enumerate() {
+        let mut map = [0.0; 4];
+        for k in 0..4 {
+            map[k] = columns.plane(k)[j];
+        }
+        for b in 0..B {
+            hidden[first + b] = Aligned(affine(map, points[b]).max(L::splat(0.0)).store());
+        }
+    }
+    let bounded = &leaf.bounded;
+    let affines = &bounded.affine;
+    for (which, out) in leaf.bounded.open.chunks(ROWS).zip(rows.chunks_exact_mut(ROWS)) {
+        // A shorter last chunk repeats its last row, which nobody asks for.
+        let (mut weights, mut lanes) = ([bounded.panel(0); ROWS], [0; ROWS]);
+        let mut sum = [[L::splat(0.0); B]; ROWS];
+        for r in 0..ROWS {
+            let Row { panel, lane, .. } = which[r.min(which.len() - 1)];
+            (weights[r], lanes[r]) = (&bounded.panel(panel as usize)[..hidden.len()], lane as usize % WIDTH);
+            let mut map = [0.0; 4];
+            for k in 0..4 {
+                map[k] = affines[panel as usize][k].0[lanes[r]];
+            }
+            for b in 0..B {
+                sum[r][b] = affine(map, points[b]);
+            }
+        }
+        for (c, hidden) in hidden.iter().enumerate() {
+            let mut inputs = [L::splat(0.0); B];
+            for b in 0..B {
+                inputs[b] = L::load(&hidden[first + b].0);
+            }
+            for r in 0..ROWS {
+                let weight = L::splat(weights[r][c].0[lanes[r]]);
+                for b in 0..B {
+                    sum[r][b] = weight.mul_add(inputs[b], sum[r][b]);
+                }
+            }
+        }
+        for r in 0..ROWS {
+            for b in 0..B {
+                out[r][first + b] = Aligned(sum[r][b].max(L::splat(0.0)).store());
+            }
+        }
+    }
+}
+
+/// An affine map at the points `x`.
+#[inline(always)]
+fn affine<L: Lanes>(map: [f32; 4], x: [L; 3]) -> L {
+    let value = x[0].mul_add(L::splat(map[0]), L::splat(map[3]));
+    let value = x[1].mul_add(L::splat(map[1]), value);
+    x[2].mul_add(L::splat(map[2]), value)
+}
+
+/// What logits are made of.
+struct Sources<'a> {
+    leaf: &'a Level,
+    heads: &'a Heads,
+    x: &'a [[Aligned; 3]],
+    hidden: &'a [Points],
+    rows: &'a [Points],
+}
+
+impl Sources<'_> {
+    /// Outputs of one group at `P` points from `first` on, all of one block. Returns `P`.
+    #[inline(always)]
+    fn add_up<L: Lanes, const P: usize>(
+        &self,
+        group: usize,
+        output: [L; 4],
+        first: usize,
+        logits: &mut [&mut [f32]],
+    ) -> usize {
+        let (leaf, groups) = (self.leaf, self.heads.groups);
+        let (block, lane) = (first / WIDTH, first % WIDTH);
+        let mut sum = [output[3]; P];
+        for k in 0..3 {
+            add(&mut sum, output[k], &self.x[block][k], lane);
+        }
+        for (weights, hidden) in leaf.part.through.chunks_exact(groups).zip(self.hidden) {
+            add(&mut sum, L::load(&weights[group].0), &hidden[block], lane);
+        }
+        for (Row { id, .. }, row) in leaf.bounded.open.iter().zip(self.rows) {
+            add(&mut sum, L::load(&self.heads.weights[*id as usize * groups + group].0), &row[block], lane);
+        }
+        for p in 0..P {
+            sum[p].store_first(&mut logits[first + p][WIDTH * group..]);
+        }
+        P
+    }
+}
+
+/// Adds `weights` times each of the numbers from `lane` on.
+#[inline(always)]
+fn add<L: Lanes, const P: usize>(sum: &mut [L; P], weights: L, numbers: &Aligned, lane: usize) {
+    let numbers = &numbers.0[lane..lane + P];
+    for p in 0..P {
+        sum[p] = weights.mul_add(L::splat(numbers[p]), sum[p]);
+    }
+}

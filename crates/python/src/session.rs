@@ -1,0 +1,267 @@
+//! Control points and sessions: the objects of `crates/session`, as Python has them.
+
+use neuralmls_session::{ControlPoint, Error};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use crate::arrays::table;
+use crate::errors::from_session;
+use crate::map::Map;
+use crate::progress::run_session;
+
+fn raised(error: Error) -> PyErr {
+    from_session(error, None)
+}
+
+/// How a control point is oriented.
+#[pyclass(frozen, eq, from_py_object, module = "neuralmls._core")]
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct Orientation(pub neuralmls_session::Orientation);
+
+#[pymethods]
+impl Orientation {
+    #[new]
+    #[pyo3(signature = (axis=[0.0, 0.0, 1.0], degrees=0.0, scale=1.0))]
+    fn new(axis: [f64; 3], degrees: f64, scale: f64) -> PyResult<Orientation> {
+        neuralmls_session::Orientation::new(axis, degrees, scale).map(Orientation).map_err(raised)
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (matrix, scale=1.0))]
+    fn of(matrix: PyReadonlyArray2<'_, f64>, scale: f64) -> PyResult<Orientation> {
+        let matrix = (matrix.shape()[0], matrix.as_array().iter().copied().collect::<Vec<f64>>());
+        neuralmls_session::Orientation::of_matrix(&matrix.1, matrix.0, scale)
+            .map(Orientation)
+            .map_err(raised)
+    }
+
+    #[getter]
+    fn axis(&self) -> (f64, f64, f64) {
+        self.0.axis.into()
+    }
+
+    #[getter]
+    fn degrees(&self) -> f64 {
+        self.0.degrees
+    }
+
+    #[getter]
+    fn scale(&self) -> f64 {
+        self.0.scale
+    }
+
+    #[getter]
+    fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        table(py, self.0.matrix().to_vec(), 3)
+    }
+
+    fn then(&self, further: &Orientation) -> Orientation {
+        Orientation(self.0.then(&further.0))
+    }
+
+    fn __repr__(&self) -> String {
+        let neuralmls_session::Orientation { axis: [x, y, z], degrees, scale } = self.0;
+        format!("Orientation(({x:?}, {y:?}, {z:?}), {degrees:?}, {scale:?})")
+    }
+
+    fn __reduce__(&self, py: Python<'_>) -> (Py<PyAny>, ([f64; 3], f64, f64)) {
+        let neuralmls_session::Orientation { axis, degrees, scale } = self.0;
+        (py.get_type::<Orientation>().into_any().unbind(), (axis, degrees, scale))
+    }
+}
+
+/// The checked list of control points.
+#[pyclass(frozen)]
+#[derive(Clone)]
+pub(crate) struct ControlPoints(pub neuralmls_session::ControlPoints);
+
+#[pymethods]
+impl ControlPoints {
+    #[new]
+    fn new(
+        names: Vec<String>,
+        sources: PyReadonlyArray2<'_, f64>,
+        targets: PyReadonlyArray2<'_, f64>,
+        orientations: Vec<Option<Orientation>>,
+        weights: Vec<f64>,
+    ) -> PyResult<ControlPoints> {
+        let (p, q) = (sources.as_array(), targets.as_array());
+        let points = names.into_iter().enumerate().map(|(i, name)| ControlPoint {
+            target: q.row(i).to_vec(),
+            orientation: orientations[i].map(|orientation| orientation.0),
+            weight: weights[i],
+            ..ControlPoint::new(name, p.row(i).to_vec())
+        });
+        neuralmls_session::ControlPoints::new(sources.shape()[1], points.collect())
+            .map(ControlPoints)
+            .map_err(raised)
+    }
+
+    #[getter]
+    fn names(&self) -> Vec<&str> {
+        self.0.iter().map(|point| &*point.name).collect()
+    }
+
+    #[getter]
+    fn sources<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        table(py, self.0.sources(), self.0.dim())
+    }
+
+    #[getter]
+    fn targets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        table(py, self.0.targets(), self.0.dim())
+    }
+
+    #[getter]
+    fn orientations(&self) -> Vec<Option<Orientation>> {
+        self.0.iter().map(|point| point.orientation.map(Orientation)).collect()
+    }
+
+    /// The rotations without their scales, m x d x d; None where there is none.
+    #[getter]
+    fn rotations<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
+        let (m, d) = (self.0.len(), self.0.dim());
+        let Some(mut scaled) = self.0.orientations() else {
+            return Ok(None);
+        };
+        for (matrix, point) in scaled.chunks_exact_mut(d * d).zip(self.0.iter()) {
+            let orientation = point.orientation.map(|orientation| orientation.rotation(d));
+            matrix.copy_from_slice(&orientation.unwrap_or_else(|| vec![f64::NAN; d * d]));
+        }
+        PyArray1::from_vec(py, scaled).reshape([m, d, d]).map(Some)
+    }
+
+    #[getter]
+    fn scales<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.0.orientations()?;
+        let scale = |point: &ControlPoint| point.orientation.map_or(f64::NAN, |orientation| orientation.scale);
+        Some(PyArray1::from_vec(py, self.0.iter().map(scale).collect()))
+    }
+
+    #[getter]
+    fn weights<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_vec(py, self.0.weights())
+    }
+
+    fn index(&self, name: &str) -> PyResult<usize> {
+        self.0.index(name).map_err(raised)
+    }
+
+    fn moved(&self, name: &str, offset: Vec<f64>) -> PyResult<ControlPoints> {
+        self.0.moved(name, &offset).map(ControlPoints).map_err(raised)
+    }
+
+    fn oriented(&self, name: &str, orientation: &Orientation) -> PyResult<ControlPoints> {
+        self.0.oriented(name, orientation.0).map(ControlPoints).map_err(raised)
+    }
+
+    fn with_targets(&self, targets: PyReadonlyArray2<'_, f64>) -> PyResult<ControlPoints> {
+        self.0.with_targets(targets.as_slice()?).map(ControlPoints).map_err(raised)
+    }
+
+    /// Warnings about control points beside a shape with the box `bounds` (2, d).
+    fn check(&self, bounds: PyReadonlyArray2<'_, f64>) -> PyResult<Vec<String>> {
+        let corners = bounds.as_slice()?;
+        let (low, high) = corners.split_at(bounds.shape()[1]);
+        self.0.check((low, high)).map_err(raised)
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.len()
+    }
+}
+
+/// Control points, settings, frame.
+#[pyclass(frozen)]
+#[derive(Clone)]
+pub(crate) struct Session(pub neuralmls_session::Session);
+
+#[pymethods]
+impl Session {
+    #[new]
+    fn new(points: &ControlPoints) -> Session {
+        Session(neuralmls_session::Session::new(points.0.clone()))
+    }
+
+    /// A file of control points of any kind, and notes on what was left out.
+    #[staticmethod]
+    fn read(data: &[u8], name: &str) -> PyResult<(Session, Vec<String>)> {
+        let read = neuralmls_session::read(data, name).map_err(raised)?;
+        Ok((Session(read.session), read.notes))
+    }
+
+    /// Sources of the one and targets of the other.
+    fn joined(&self, targets: &Session, by_order: bool) -> PyResult<(Session, Vec<String>)> {
+        let read =
+            neuralmls_session::join(self.0.clone(), targets.0.clone(), by_order).map_err(raised)?;
+        Ok((Session(read.session), read.notes))
+    }
+
+    fn to_json(&self) -> String {
+        self.0.to_json()
+    }
+
+    fn to_csv(&self) -> PyResult<String> {
+        self.0.to_csv().map_err(raised)
+    }
+
+    #[getter]
+    fn points(&self) -> ControlPoints {
+        ControlPoints(self.0.points.clone())
+    }
+
+    fn with_points(&self, points: &ControlPoints) -> Session {
+        Session(neuralmls_session::Session { points: points.0.clone(), ..self.0.clone() })
+    }
+
+    /// The settings as the session file has them, JSON.
+    #[getter]
+    fn settings(&self) -> String {
+        self.0.settings.to_json()
+    }
+
+    /// Whether the settings were said, and not only left at their defaults.
+    #[getter]
+    fn has_settings(&self) -> bool {
+        self.0.has_settings
+    }
+
+    /// The same with those settings that `changes`, JSON as in a session file, names.
+    fn with_settings(&self, changes: &str) -> PyResult<Session> {
+        self.0.with_settings(changes).map(Session).map_err(raised)
+    }
+
+    /// The box in which the weights are trained, (2, d).
+    #[getter]
+    fn frame<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let corners = |frame: &neuralmls_session::Bounds| [&frame.min[..], &frame.max[..]].concat();
+        self.0.frame.as_ref().map(|frame| table(py, corners(frame), self.0.points.dim())).transpose()
+    }
+
+    fn with_frame(&self, frame: Option<PyReadonlyArray2<'_, f64>>) -> PyResult<Session> {
+        let frame = bounds(frame, self.0.points.dim())?;
+        Ok(Session(neuralmls_session::Session { frame, ..self.0.clone() }))
+    }
+
+    /// Fits the weights: in the session's frame, else in the box `bounds`, else in that of the control points.
+    fn fit(
+        &self,
+        py: Python<'_>,
+        bounds: Option<PyReadonlyArray2<'_, f64>>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Map> {
+        let bounds = self::bounds(bounds, self.0.points.dim())?;
+        run_session(py, progress, |report| self.0.fit(bounds.as_ref(), report)).map(Map)
+    }
+}
+
+fn bounds(
+    corners: Option<PyReadonlyArray2<'_, f64>>,
+    dim: usize,
+) -> PyResult<Option<neuralmls_session::Bounds>> {
+    let Some(corners) = corners else {
+        return Ok(None);
+    };
+    let (low, high) = (corners.as_array().row(0).to_vec(), corners.as_array().row(1).to_vec());
+    neuralmls_session::Bounds::new(low, high, dim).map(Some).map_err(raised)
+}

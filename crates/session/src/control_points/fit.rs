@@ -1,0 +1,1 @@
+//! How well one rotation, or one mirroring, takes all sources to their targets.

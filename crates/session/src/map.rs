@@ -1,0 +1,221 @@
+//! A fitted session: a map of space, `f: R^d -> R^d`, whatever file it is applied to.
+
+use std::sync::Arc;
+
+use neuralmls_core::{
+    progress::Progress, Aim, Deformed, Deformer, Frame, Handles, InverseDistance, PointTree, Pose, Schedule, Trained, Training,
+    Transform, Weights,
+};
+
+use crate::{Bounds, Error, HandlesSetting, Session, WeightsSettings};
+
+/// Control points, the weights that were fitted to them, and what is set: where each point of space goes.
+///
+/// The weights are trained in the session's frame, so that the same session gives the same map on every file. What only moves the control
+/// points or changes the transform, the temperature or the handles needs no new fit: [`Map::with`].
+///
+/// ```
+/// use neuralmls_session::{read, WeightsSettings};
+/// let mut session = read(b"name,x,y,target_x,target_y\na,0,0,0,0\nb,1,0,0,1\n", "points.csv").unwrap().session;
+/// session.settings.weights = WeightsSettings::InverseDistance { alpha: 1.0, epsilon: 0.0 };
+/// let map = session.fit(None, &mut |_| true).unwrap();
+/// let moved = map.at(&[0.5, 0.0], &mut |_| true).unwrap(); // half of the way, turned by a quarter
+/// assert!((moved[0] - 0.0).abs() < 1e-9 && (moved[1] - 0.5).abs() < 1e-9);
+/// ```
+#[derive(Clone)]
+pub struct Map {
+    session: Session,
+    weights: Arc<Weights>,
+    handles: Arc<Handles>,
+}
+
+impl Session {
+    /// Fits the weights to the control points: in the session's own frame, else in `bounds`, the box around the shapes, else in the box of
+    /// the control points.
+    ///
+    /// # Errors
+    /// Where a setting is out of its range, a box has no size; for shape-aware weights, which need a shape: [`Map::of`] takes them.
+    pub fn fit(&self, bounds: Option<&Bounds>, progress: &mut Progress<'_>) -> Result<Map, Error> {
+        self.settings.check()?;
+        let mut session = self.clone();
+        session.frame = self.frame.clone().or_else(|| bounds.cloned());
+        let (p, dim) = (self.points.sources(), self.points.dim());
+        let frame = match &session.frame {
+            Some(bounds) => bounds.frame(dim)?,
+            None => Frame::around(&p, dim),
+        };
+        let weights = match self.settings.weights {
+            WeightsSettings::Neural { width, steps, seed, rate, fourier_sigma } => {
+                let schedule = steps.map_or(Training::default().schedule, Schedule::Fixed);
+                let training = Training { width, schedule, rate, seed, fourier_sigma };
+                Weights::neural(&p, dim, frame, &training, progress)?
+            }
+            WeightsSettings::InverseDistance { alpha, epsilon } => {
+                Weights::InverseDistance(InverseDistance::new(&p, dim, frame, alpha, epsilon)?)
+            }
+            WeightsSettings::ShapeAware { .. } => {
+                return Err(Error::argument("weights: shape-aware weights are fitted to a shape, not to a box"));
+            }
+        };
+        Map::of(session, weights)
+    }
+}
+
+impl Session {
+    /// Where to aim so that control points arrive as closely as the handles and each one's weight say; `handles` are those of a map of this
+    /// session, or of its logits elsewhere.
+    ///
+    /// # Errors
+    /// Where the targets do not fit.
+    pub fn aim(&self, handles: &Handles, pose: Pose<'_>) -> Result<Aim, Error> {
+        let (temperature, adherence) = (self.settings.temperature, self.adherence());
+        Ok(match self.settings.handles {
+            HandlesSetting::Exact => handles.aim(pose, temperature, &adherence)?,
+            _ => handles.aim_carefully(pose, temperature, &adherence)?,
+        })
+    }
+
+    /// How much of the way each control point is taken from where plain moving least squares takes it to its target.
+    pub(crate) fn adherence(&self) -> Vec<f64> {
+        let all = match self.settings.handles {
+            HandlesSetting::Auto | HandlesSetting::Exact => 1.0,
+            HandlesSetting::Soft => 0.0,
+            HandlesSetting::Part(part) => part,
+        };
+        self.points.weights().into_iter().map(|weight| all * weight).collect()
+    }
+}
+
+impl Map {
+    /// The map of weights that were fitted already.
+    ///
+    /// # Errors
+    /// Where they belong to other control points.
+    pub fn of(session: Session, weights: Weights) -> Result<Map, Error> {
+        Map::over(session, Arc::new(weights))
+    }
+
+    /// The same, of weights that are shared.
+    ///
+    /// # Errors
+    /// Where they belong to other control points.
+    pub fn over(session: Session, weights: Arc<Weights>) -> Result<Map, Error> {
+        session.settings.check()?;
+        if weights.control_points() != session.points.sources() {
+            return Err(Error::argument("the weights were fitted to other control points at rest"));
+        }
+        let handles = Arc::new(Handles::new(&weights, session.settings.transform)?);
+        Ok(Map { session, weights, handles })
+    }
+
+    /// The same weights with other targets, transform, temperature or handles.
+    ///
+    /// # Errors
+    /// Where the control points at rest or the settings of the weights are others: these need a fit.
+    pub fn with(&self, session: Session) -> Result<Map, Error> {
+        if session.settings.weights != self.session.settings.weights {
+            return Err(Error::argument("weights: the map was fitted with other weights"));
+        }
+        let session = Session { frame: self.session.frame.clone(), ..session };
+        if session.points.sources() == self.weights.control_points()
+            && session.settings.transform == self.session.settings.transform
+        {
+            session.settings.check()?;
+            return Ok(Map { session, ..self.clone() });
+        }
+        Map::over(session, self.weights.clone())
+    }
+
+    /// The control points, the settings, and the frame in which the weights were trained.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// The weights.
+    pub fn weights(&self) -> &Weights {
+        &self.weights
+    }
+
+    /// What the training of a network left, where the weights are one.
+    pub fn trained(&self) -> Option<&Trained> {
+        match &*self.weights {
+            Weights::Neural(trained) | Weights::ShapeAware(trained) => Some(trained),
+            Weights::InverseDistance(_) => None,
+        }
+    }
+
+    /// The weights, shared.
+    pub fn shared_weights(&self) -> Arc<Weights> {
+        self.weights.clone()
+    }
+
+    /// The control points as points that are moved themselves.
+    pub fn handles(&self) -> &Handles {
+        &self.handles
+    }
+
+    /// The longest side of the frame: what lengths are measured by.
+    pub fn side(&self) -> f64 {
+        2.0 * self.weights.frame().half
+    }
+
+    /// The local map that is set.
+    pub fn transform(&self) -> Transform {
+        self.session.settings.transform
+    }
+
+    /// Where to aim so that the control points arrive, as closely as the handles and each one's weight say.
+    ///
+    /// # Errors
+    /// Where the orientations do not fit.
+    pub fn aim(&self) -> Result<Aim, Error> {
+        let (q, orientations) = (self.session.points.targets(), self.session.points.orientations());
+        self.aim_at(Pose { q: &q, orientations: orientations.as_deref() })
+    }
+
+    /// [`Map::aim`] for other targets than the session's: what a drag asks for, frame by frame.
+    ///
+    /// # Errors
+    /// Where the targets do not fit.
+    pub fn aim_at(&self, pose: Pose<'_>) -> Result<Aim, Error> {
+        self.session.aim(&self.handles, pose)
+    }
+
+    /// Binds the points `x` (n x dim); `tree`, where there is one, holds the same points.
+    ///
+    /// # Errors
+    /// Where they do not fit, or there is not enough memory; [`neuralmls_core::Error::Cancelled`].
+    pub fn bind(
+        &self,
+        x: Vec<f64>,
+        tree: Option<&PointTree>,
+        progress: &mut Progress<'_>,
+    ) -> Result<Deformer, Error> {
+        Ok(Deformer::new(x, &self.weights, tree, self.transform(), progress)?)
+    }
+
+    /// Where bound points go with what [`Map::aim`] found; with the local maps if `maps`.
+    ///
+    /// # Errors
+    /// As [`Deformer::deform`].
+    pub fn deform(
+        &self,
+        bound: &Deformer,
+        aim: &Aim,
+        maps: bool,
+        progress: &mut Progress<'_>,
+    ) -> Result<Deformed, Error> {
+        let orientations = self.session.points.orientations();
+        let pose = Pose { q: &aim.targets, orientations: orientations.as_deref() };
+        Ok(bound.deform(pose, self.session.settings.temperature, maps, progress)?)
+    }
+
+    /// Where the points `x` (n x dim) go.
+    ///
+    /// # Errors
+    /// As [`Map::bind`].
+    pub fn at(&self, x: &[f64], progress: &mut Progress<'_>) -> Result<Vec<f64>, Error> {
+        let bound = self.bind(x.to_vec(), None, progress)?;
+        Ok(self.deform(&bound, &self.aim()?, false, progress)?.positions)
+    }
+}

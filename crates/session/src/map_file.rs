@@ -1,0 +1,237 @@
+//! Saved maps: a safetensors file, of the weights bit for bit, with the session as its metadata. Reading it executes nothing, and every
+//! array's type and shape are checked before it is read.
+//!
+//! | array | type, shape | of |
+//! |---|---|---|
+//! | `control_points` | f64 (m, d) | all |
+//! | `centre`, `half` | f64 (d), (1) | all: the frame |
+//! | `weight0` to `weight2`, `bias0` to `bias2` | f32 (outputs, inputs), (outputs) | networks |
+//! | `frequencies` | f32 (k, d) | networks: of the Fourier features, k = 0 without |
+//! | `losses`, `loss` | f64 (steps), (1) | networks |
+//! | `alpha`, `epsilon` | f64 (1) | inverse distance |
+//!
+//! Metadata: `format`, `version`, `weights` (their kind), and `session`, a session file; a file of weights alone has none.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+use neuralmls_core::{Frame, InverseDistance, Layer, Network, Trained, Weights};
+use safetensors::tensor::{serialize, Dtype, SafeTensors, View};
+
+use crate::{read, Error, Map};
+
+const FORMAT: &str = "neuralmls-map";
+const VERSION: &str = "1";
+
+impl Map {
+    /// The map as a file.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        write(self.weights(), Some(self.session().to_json()))
+    }
+
+    /// Reads what [`Map::to_bytes`] wrote.
+    ///
+    /// # Errors
+    /// Where it is no such file.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Map, Error> {
+        let (weights, session) = parse(bytes)?;
+        let session = session.ok_or_else(|| broken("it holds weights without a session: it is no map"))?;
+        let read = read(session.as_bytes(), "session.json")
+            .map_err(|error| broken(&format!("its session: {error}")))?;
+        Map::of(read.session, weights).map_err(|error| broken(&error.message))
+    }
+}
+
+/// Weights alone as a file.
+pub fn weights_to_bytes(weights: &Weights) -> Vec<u8> {
+    write(weights, None)
+}
+
+/// Reads the weights of a file: of weights alone, or of a map.
+///
+/// # Errors
+/// Where it is no such file.
+pub fn weights_from_bytes(bytes: &[u8]) -> Result<Weights, Error> {
+    Ok(parse(bytes)?.0)
+}
+
+/// An array of a file that is written.
+struct Array {
+    dtype: Dtype,
+    shape: Vec<usize>,
+    bytes: Vec<u8>,
+}
+
+impl Array {
+    fn doubles(shape: &[usize], numbers: &[f64]) -> Array {
+        let bytes = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+        Array { dtype: Dtype::F64, shape: shape.to_vec(), bytes }
+    }
+
+    fn singles(shape: &[usize], numbers: &[f32]) -> Array {
+        let bytes = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+        Array { dtype: Dtype::F32, shape: shape.to_vec(), bytes }
+    }
+}
+
+impl View for &Array {
+    fn dtype(&self) -> Dtype {
+        self.dtype
+    }
+
+    fn shape(&self) -> &[usize] {
+        &self.shape
+    }
+
+    fn data(&self) -> Cow<'_, [u8]> {
+        Cow::Borrowed(&self.bytes)
+    }
+
+    fn data_len(&self) -> usize {
+        self.bytes.len()
+    }
+}
+
+fn write(weights: &Weights, session: Option<String>) -> Vec<u8> {
+    let (p, dim, frame) = (weights.control_points(), weights.dim(), weights.frame());
+    let mut arrays = vec![
+        ("control_points".to_string(), Array::doubles(&[p.len() / dim, dim], p)),
+        ("centre".into(), Array::doubles(&[dim], &frame.centre[..dim])),
+        ("half".into(), Array::doubles(&[1], &[frame.half])),
+    ];
+    match weights {
+        Weights::Neural(trained) | Weights::ShapeAware(trained) => {
+            for (i, layer) in trained.network.layers().iter().enumerate() {
+                let shape = [layer.bias.len(), layer.inputs()];
+                arrays.push((format!("weight{i}"), Array::singles(&shape, &layer.weight)));
+                arrays.push((format!("bias{i}"), Array::singles(&shape[..1], &layer.bias)));
+            }
+            let frequencies = trained.network.frequencies();
+            arrays.push(("frequencies".into(), Array::singles(&[frequencies.len() / dim, dim], frequencies)));
+            arrays.push(("losses".into(), Array::doubles(&[trained.losses.len()], &trained.losses)));
+            arrays.push(("loss".into(), Array::doubles(&[1], &[trained.loss])));
+        }
+        Weights::InverseDistance(function) => {
+            arrays.push(("alpha".into(), Array::doubles(&[1], &[function.alpha()])));
+            arrays.push(("epsilon".into(), Array::doubles(&[1], &[function.epsilon()])));
+        }
+    }
+    let mut metadata: HashMap<String, String> =
+        [("format", FORMAT), ("version", VERSION), ("weights", weights.kind())]
+            .map(|(key, value)| (key.to_string(), value.to_string()))
+            .into();
+    metadata.extend(session.map(|session| ("session".to_string(), session)));
+    let views = arrays.iter().map(|(name, array)| (name.as_str(), array));
+    serialize(views, Some(metadata)).expect("arrays whose shapes fit their bytes")
+}
+
+fn parse(bytes: &[u8]) -> Result<(Weights, Option<String>), Error> {
+    let unread = |error: safetensors::SafeTensorError| broken(&error.to_string());
+    let (_, head) = SafeTensors::read_metadata(bytes).map_err(unread)?;
+    let arrays = Arrays(SafeTensors::deserialize(bytes).map_err(unread)?);
+    let metadata = head.metadata().as_ref();
+    let said = |key: &str| metadata.and_then(|said| said.get(key)).map(String::as_str);
+    if said("format") != Some(FORMAT) {
+        return Err(broken("its metadata has no format neuralmls-map"));
+    }
+    if said("version") != Some(VERSION) {
+        let found = said("version").unwrap_or("none");
+        return Err(broken(&format!("version: expected {VERSION}, found {}", crate::text::shown(found))));
+    }
+    let shape = arrays.shape("control_points", 2)?;
+    let (m, dim) = (shape[0], shape[1]);
+    if !(1..=3).contains(&dim) || !(1..=1000).contains(&m) {
+        return Err(broken(&format!("control_points: expected 1 to 1,000 of 1 to 3 coordinates, found {m} of {dim}")));
+    }
+    let p = arrays.doubles("control_points", &[m, dim])?;
+    if p.iter().any(|c| !c.is_finite()) {
+        return Err(broken("control_points: expected finite numbers"));
+    }
+    let mut frame = Frame { centre: [0.0; 3], half: arrays.number("half")? };
+    frame.centre[..dim].copy_from_slice(&arrays.doubles("centre", &[dim])?);
+    if !(frame.half > 0.0 && frame.half.is_finite()) || frame.centre.iter().any(|c| !c.is_finite()) {
+        return Err(broken("expected a finite frame with a size above 0"));
+    }
+    let refused = |error: neuralmls_core::Error| broken(&error.to_string());
+    let weights = match said("weights") {
+        Some(kind @ ("neural" | "shape-aware")) => {
+            let trained = Trained {
+                network: network(&arrays, m, dim, frame)?,
+                losses: arrays.doubles("losses", &arrays.shape("losses", 1)?)?,
+                loss: arrays.number("loss")?,
+                control_points: p,
+            };
+            if kind == "neural" {
+                Weights::Neural(trained)
+            } else {
+                Weights::ShapeAware(trained)
+            }
+        }
+        Some("inverse-distance") => {
+            let (alpha, epsilon) = (arrays.number("alpha")?, arrays.number("epsilon")?);
+            Weights::InverseDistance(InverseDistance::new(&p, dim, frame, alpha, epsilon).map_err(refused)?)
+        }
+        _ => return Err(broken("weights: expected neural, shape-aware or inverse-distance")),
+    };
+    Ok((weights, said("session").map(str::to_string)))
+}
+
+fn network(arrays: &Arrays<'_>, m: usize, dim: usize, frame: Frame) -> Result<Network, Error> {
+    let features = arrays.shape("frequencies", 2)?[0];
+    let frequencies = arrays.singles("frequencies", &[features, dim])?;
+    let width = arrays.shape("bias0", 1)?[0];
+    let second = arrays.shape("bias1", 1)?[0];
+    let inputs = dim + 2 * features;
+    let mut layers = Vec::with_capacity(3);
+    for (i, shape) in [[width, inputs], [second, width], [m, second]].iter().enumerate() {
+        let weight = arrays.singles(&format!("weight{i}"), shape)?;
+        let bias = arrays.singles(&format!("bias{i}"), &shape[..1])?;
+        if weight.iter().chain(&bias).any(|number| !number.is_finite()) {
+            return Err(broken(&format!("layer {i}: expected finite numbers")));
+        }
+        layers.push(Layer { weight, bias });
+    }
+    let layers: [Layer; 3] = layers.try_into().ok().expect("three layers");
+    Network::new(dim, frame, frequencies, layers).map_err(|error| broken(&error.to_string()))
+}
+
+/// The arrays of a file; each is asked for with the type and shape that it must have.
+struct Arrays<'a>(SafeTensors<'a>);
+
+impl Arrays<'_> {
+    fn shape(&self, name: &str, dimensions: usize) -> Result<Vec<usize>, Error> {
+        let array = self.0.tensor(name).map_err(|_| broken(&format!("{name}: there is no such array")))?;
+        if array.shape().len() != dimensions {
+            let found = array.shape().len();
+            return Err(broken(&format!("{name}: expected {dimensions} dimensions, found {found}")));
+        }
+        Ok(array.shape().to_vec())
+    }
+
+    fn bytes(&self, name: &str, dtype: Dtype, shape: &[usize]) -> Result<&[u8], Error> {
+        let array = self.0.tensor(name).map_err(|_| broken(&format!("{name}: there is no such array")))?;
+        if array.dtype() != dtype || array.shape() != shape {
+            let (found, has) = (array.dtype(), array.shape());
+            return Err(broken(&format!("{name}: expected {dtype:?} {shape:?}, found {found:?} {has:?}")));
+        }
+        Ok(array.data())
+    }
+
+    fn doubles(&self, name: &str, shape: &[usize]) -> Result<Vec<f64>, Error> {
+        let (numbers, _) = self.bytes(name, Dtype::F64, shape)?.as_chunks::<8>();
+        Ok(numbers.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect())
+    }
+
+    fn singles(&self, name: &str, shape: &[usize]) -> Result<Vec<f32>, Error> {
+        let (numbers, _) = self.bytes(name, Dtype::F32, shape)?.as_chunks::<4>();
+        Ok(numbers.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect())
+    }
+
+    fn number(&self, name: &str) -> Result<f64, Error> {
+        Ok(self.doubles(name, &[1])?[0])
+    }
+}
+
+fn broken(why: &str) -> Error {
+    Error::file(format!("this is no map that was saved by NeuralMLS: {why}"))
+}

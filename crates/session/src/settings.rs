@@ -1,0 +1,211 @@
+//! How to deform: what a person sets besides the control points.
+
+use crate::error::Error;
+use crate::text::number;
+use crate::Transform;
+
+/// The kind of weights, and its parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WeightsSettings {
+    /// Learned from the control points.
+    Neural {
+        /// Neurons in each of the two hidden layers.
+        width: usize,
+        /// Steps of the training; `None`: until every control point has 0.9 of the weight at its own place.
+        steps: Option<usize>,
+        /// Where the random numbers start.
+        seed: u64,
+        /// Adam's learning rate.
+        rate: f64,
+        /// The deviation of random Fourier features; `None` for none.
+        fourier_sigma: Option<f64>,
+    },
+    /// Learned from the control points and the shape.
+    ShapeAware {
+        /// Where the random numbers start.
+        seed: u64,
+    },
+    /// `1 / (d^(2 alpha) + epsilon)`.
+    InverseDistance {
+        /// Exponent of the squared distance.
+        alpha: f64,
+        /// Above 0 caps the weight near a control point.
+        epsilon: f64,
+    },
+}
+
+impl WeightsSettings {
+    /// The name of the kind, as in files.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            WeightsSettings::Neural { .. } => "neural",
+            WeightsSettings::ShapeAware { .. } => "shape-aware",
+            WeightsSettings::InverseDistance { .. } => "inverse-distance",
+        }
+    }
+
+    /// The defaults of a kind; `None` where there is no such kind.
+    pub fn of_kind(kind: &str) -> Option<Self> {
+        match kind {
+            "neural" => Some(WeightsSettings::default()),
+            "shape-aware" => Some(WeightsSettings::ShapeAware { seed: 0 }),
+            "inverse-distance" => Some(WeightsSettings::InverseDistance { alpha: 1.0, epsilon: 0.0 }),
+            _ => None,
+        }
+    }
+}
+
+impl Default for WeightsSettings {
+    fn default() -> Self {
+        WeightsSettings::Neural { width: 1024, steps: None, seed: 0, rate: 6e-4, fourier_sigma: None }
+    }
+}
+
+/// How closely control points arrive at their targets.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum HandlesSetting {
+    /// They arrive, but for those that this would harm.
+    #[default]
+    Auto,
+    /// They arrive, whatever it does to the shape.
+    Exact,
+    /// As plain moving least squares leaves them, the paper's way.
+    Soft,
+    /// A share of the way from there to the targets, 0 to 1.
+    Part(f64),
+}
+
+/// The names of the transforms, as in files.
+pub const TRANSFORMS: [(&str, Transform); 3] =
+    [("rigid", Transform::Rigid), ("similarity", Transform::Similarity), ("affine", Transform::Affine)];
+
+/// What is set for the whole shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// The weight function.
+    pub weights: WeightsSettings,
+    /// The family of local maps.
+    pub transform: Transform,
+    /// T > 0.
+    pub temperature: f64,
+    /// How closely control points arrive.
+    pub handles: HandlesSetting,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            weights: WeightsSettings::default(),
+            transform: Transform::Rigid,
+            temperature: 1.0,
+            handles: HandlesSetting::Auto,
+        }
+    }
+}
+
+impl HandlesSetting {
+    /// As a sentence has it.
+    pub fn name(&self) -> String {
+        match self {
+            HandlesSetting::Auto => "auto".into(),
+            HandlesSetting::Exact => "exact".into(),
+            HandlesSetting::Soft => "soft".into(),
+            HandlesSetting::Part(part) => number(*part),
+        }
+    }
+}
+
+/// A transform by its name.
+///
+/// # Errors
+/// An argument, where there is none of that name.
+pub fn transform(name: &str) -> Result<Transform, Error> {
+    let found = TRANSFORMS.iter().find(|(known, _)| *known == name);
+    found.map(|(_, transform)| *transform).ok_or_else(|| {
+        let found = crate::text::quoted(name);
+        Error::argument(format!("transform: expected 'rigid', 'similarity' or 'affine', found {found}"))
+    })
+}
+
+impl Settings {
+    /// Refuses what is out of its range, by name.
+    ///
+    /// # Errors
+    /// An argument.
+    pub fn check(&self) -> Result<(), Error> {
+        match self.weights {
+            WeightsSettings::Neural { width, steps, seed: _, rate, fourier_sigma } => {
+                check_count("width", width, 1 << 14)?;
+                if let Some(steps) = steps {
+                    check_count("steps", steps, 1_000_000)?;
+                }
+                check_above("rate", rate)?;
+                if let Some(sigma) = fourier_sigma {
+                    check_above("fourier_sigma", sigma)?;
+                }
+            }
+            WeightsSettings::ShapeAware { .. } => {}
+            WeightsSettings::InverseDistance { alpha, epsilon } => {
+                check_above("alpha", alpha)?;
+                check_number("epsilon", epsilon, epsilon >= 0.0, "of at least 0")?;
+            }
+        }
+        check_above("temperature", self.temperature)?;
+        match self.handles {
+            HandlesSetting::Part(share) => {
+                check_number("handles", share, (0.0..=1.0).contains(&share), "of at least 0 and at most 1")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+fn check_count(name: &str, count: usize, most: usize) -> Result<(), Error> {
+    if (1..=most).contains(&count) {
+        return Ok(());
+    }
+    Err(Error::argument(format!("{name}: expected a whole number from 1 to {most}, found {count}")))
+}
+
+fn check_above(name: &str, value: f64) -> Result<(), Error> {
+    check_number(name, value, value > 0.0, "above 0")
+}
+
+fn check_number(name: &str, value: f64, ok: bool, expected: &str) -> Result<(), Error> {
+    if ok && value.is_finite() {
+        return Ok(());
+    }
+    Err(Error::argument(format!("{name}: expected a number {expected}, found {}", number(value))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_defaults_are_in_range() {
+        Settings::default().check().unwrap();
+        for kind in ["neural", "shape-aware", "inverse-distance"] {
+            let weights = WeightsSettings::of_kind(kind).unwrap();
+            assert_eq!(weights.kind(), kind);
+            Settings { weights, ..Settings::default() }.check().unwrap();
+        }
+        assert_eq!(WeightsSettings::of_kind("classic"), None);
+    }
+
+    #[test]
+    fn what_is_out_of_range_is_named() {
+        let says = |settings: Settings| settings.check().unwrap_err().message;
+        let some = Settings::default;
+        let cold = Settings { temperature: -1.0, ..some() };
+        assert_eq!(says(cold), "temperature: expected a number above 0, found -1");
+        let far = Settings { handles: HandlesSetting::Part(1.5), ..some() };
+        assert_eq!(says(far), "handles: expected a number of at least 0 and at most 1, found 1.5");
+        let weights = WeightsSettings::InverseDistance { alpha: f64::INFINITY, epsilon: 0.0 };
+        assert_eq!(says(Settings { weights, ..some() }), "alpha: expected a number above 0, found inf");
+        let weights =
+            WeightsSettings::Neural { width: 0, steps: None, seed: 0, rate: 1.0, fourier_sigma: None };
+        let expected = "width: expected a whole number from 1 to 16384, found 0";
+        assert_eq!(says(Settings { weights, ..some() }), expected);
+    }
+}

@@ -1,0 +1,87 @@
+"""The options that say how to deform, shared by the commands that fit weights: what a person says goes before a session."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, Literal, TypeAlias, TypeVar, cast, get_args
+
+import click
+
+Kind: TypeAlias = Literal["neural", "shape-aware", "inverse-distance"]
+TransformName: TypeAlias = Literal["rigid", "similarity", "affine"]
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+class HandlesType(click.ParamType):
+    """How closely control points arrive: a word, or a number from 0 to 1."""
+
+    name = "auto|exact|soft|0..1"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> str | float:
+        """Return the word or the number; its range is checked with the other settings."""
+        if value in ("auto", "exact", "soft"):
+            return str(value)
+        try:
+            if "_" in str(value):  # Python would read 1_0 as a number
+                raise ValueError
+            return float(value)
+        except ValueError:
+            self.fail(f"expected auto, exact, soft or a number from 0 to 1, found '{value}'", param, ctx)
+
+
+WEIGHTS = (
+    click.option(
+        "--weights",
+        type=click.Choice(get_args(Kind)),
+        help="Learned from the control points (neural), from the shape too, or the classic ones.  [default: neural]",
+    ),
+    click.option(
+        "--temperature",
+        type=float,
+        help="Of the softmax: below 1 parts move more apart, above 1 more together.  [default: 1]",
+    ),
+    click.option("--alpha", type=float, help="Inverse-distance: exponent of the squared distance.  [default: 1]"),
+    click.option(
+        "--epsilon",
+        type=float,
+        help="Inverse-distance: above 0 caps the weight near a control point; "
+        "distances count in halves of the longest side.  [default: 0]",
+    ),
+    click.option("--width", type=int, help="Neural: neurons of a hidden layer.  [default: 1024]"),
+    click.option("--steps", type=int, help="Neural: steps of the training.  [default: until the loss is small]"),
+    click.option("--seed", type=int, help="Neural, shape-aware: seed of the training.  [default: 0]"),
+)
+MOTION = (
+    click.option(
+        "--transform",
+        type=click.Choice(get_args(TransformName)),
+        help="What may happen to the shape locally.  [default: rigid]",
+    ),
+    click.option(
+        "--handles",
+        type=HandlesType(),
+        help="How closely control points arrive: all the way where they own their places and arrive (auto), at any "
+        "price (exact), near their targets as in the paper (soft), or that part of the way.  [default: auto]",
+    ),
+)
+
+
+def settings_options(*options: Callable[[Any], Any]) -> Callable[[Function], Function]:
+    """Add options of settings; the function gets those that were said as `said`."""
+
+    def decorate(function: Function) -> Function:
+        @wraps(function)
+        def chosen(**arguments: Any) -> Any:
+            names = ("weights", "temperature", "alpha", "epsilon", "width", "steps", "seed", "transform", "handles")
+            said = {name: arguments.pop(name) for name in names if name in arguments}
+            return function(said={name: value for name, value in said.items() if value is not None}, **arguments)
+
+        for option in reversed(options):
+            chosen = option(chosen)
+        return cast(Function, chosen)
+
+    return decorate

@@ -1,0 +1,289 @@
+"""Maps: a fitted session, `f: R^d -> R^d`, whatever shape it is applied to."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any, Literal, Self, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from neuralmls import _core
+from neuralmls.arrays import Progress, as_points
+from neuralmls.control_points import ControlPoints
+from neuralmls.deformer import Deformer, Floats
+from neuralmls.errors import FileError
+from neuralmls.files import as_path, read_bytes, write_atomically
+from neuralmls.placement import as_indices
+from neuralmls.report import Advice, Report
+from neuralmls.shape import Shape
+from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
+
+if TYPE_CHECKING:
+    from neuralmls.session import Session
+
+KINDS: dict[str, type[Weights]] = {
+    kind._kind: kind for kind in (NeuralWeights, ShapeAwareWeights, InverseDistanceWeights)
+}
+
+
+class Map:
+    """A fitted session: where each point of space goes. Made by `Session.fit` or `Map.load`.
+
+    The same map gives the same result for every file, block, process and machine, to rounding: bodies and their
+    clothes, meshes and their landmarks stay together.
+
+    Examples
+    --------
+    >>> from neuralmls import Session
+    >>> points = ControlPoints([[0.0, 0], [1, 0]])
+    >>> map = Session(points, weights="inverse-distance").fit()
+    >>> map.moved(points.moved({"p2": [0, 0.5]})).at([[1.0, 0.0]]).round(6).tolist()
+    [[1.0, 0.5]]
+    """
+
+    _core: _core.Map
+
+    @classmethod
+    def _of(cls, core: _core.Map) -> Self:
+        self = cls.__new__(cls)
+        self._core = core
+        return self
+
+    @classmethod
+    def of(cls, session: Session, weights: Weights) -> Self:
+        """Return the map of weights that were fitted already.
+
+        Raises
+        ------
+        ArgumentError
+            They belong to other control points.
+        """
+        return cls._of(_core.Map.of(session._core, weights._core))
+
+    @property
+    def session(self) -> Session:
+        """The control points, the settings, and the frame in which the weights were trained."""
+        from neuralmls.session import Session
+
+        return Session._of(self._core.session)
+
+    @property
+    def weights(self) -> Weights:
+        """The weights."""
+        core = self._core.weights
+        return KINDS[core.kind]._of(core)
+
+    def with_session(self, session: Session) -> Map:
+        """Return the map of another session with the same weights: other targets, transform, temperature, handles.
+
+        Raises
+        ------
+        ArgumentError
+            The control points at rest or the settings of the weights are others, which needs a fit.
+        """
+        return Map._of(self._core.with_session(session._core))
+
+    def moved(self, points: ControlPoints) -> Map:
+        """Return the map with other targets and orientations of the same control points.
+
+        Raises
+        ------
+        ArgumentError
+            The control points at rest are others.
+        """
+        return Map._of(self._core.with_session(self._core.session.with_points(points._core)))
+
+    def at(self, points: ArrayLike, *, progress: Progress | None = None) -> Floats:
+        """Return where points (n, d) go, float32 if they are, else float64.
+
+        Raises
+        ------
+        ArgumentError
+            They are no finite points of the map's dimension.
+        """
+        return self.deform(points, progress=progress)
+
+    @overload
+    def deform(
+        self,
+        shape: Shape | ArrayLike,
+        *,
+        return_maps: Literal[False] = ...,
+        progress: Progress | None = ...,
+    ) -> Floats: ...
+
+    @overload
+    def deform(
+        self, shape: Shape | ArrayLike, *, return_maps: Literal[True], progress: Progress | None = ...
+    ) -> tuple[Floats, NDArray[np.float64]]: ...
+
+    def deform(
+        self, shape: Shape | ArrayLike, *, return_maps: bool = False, progress: Progress | None = None
+    ) -> Floats | tuple[Floats, NDArray[np.float64]]:
+        """Return where the points of a shape go: what `neuralmls deform` writes.
+
+        Parameters
+        ----------
+        shape : Shape, or points (n, d)
+        return_maps : bool
+            Also return the local maps `M`, (n, d, d) float64, by which normals turn (`Shape.write`).
+        progress : callable, optional
+            Told the fraction done, from 0 to 1; what it raises stops the call.
+
+        Returns
+        -------
+        (n, d), float32 if the points were, else float64
+
+        Raises
+        ------
+        ArgumentError
+            The points are no finite points of the map's dimension.
+        """
+        y, maps = self.frame(self.bind(shape, progress=progress), return_maps=return_maps, progress=progress)
+        return y if maps is None else (y, maps)
+
+    def bind(self, shape: Shape | ArrayLike, *, progress: Progress | None = None) -> Deformer:
+        """Evaluate the weights at points once, for many frames: `map.moved(points).frame(bound)`.
+
+        Raises
+        ------
+        ArgumentError
+            They are no finite points of the map's dimension.
+        """
+        x = shape.positions if isinstance(shape, Shape) else shape
+        transform = json.loads(self._core.session.settings)["transform"]
+        return Deformer(x, self.weights, transform=transform, progress=progress)
+
+    @overload
+    def frame(
+        self,
+        bound: Deformer,
+        *,
+        return_maps: Literal[False] = ...,
+        out: NDArray[np.float64] | None = ...,
+        progress: Progress | None = ...,
+    ) -> Floats: ...
+
+    @overload
+    def frame(
+        self,
+        bound: Deformer,
+        *,
+        return_maps: bool,
+        out: NDArray[np.float64] | None = ...,
+        progress: Progress | None = ...,
+    ) -> tuple[Floats, NDArray[np.float64] | None]: ...
+
+    def frame(
+        self,
+        bound: Deformer,
+        *,
+        return_maps: bool | None = None,
+        out: NDArray[np.float64] | None = None,
+        progress: Progress | None = None,
+    ) -> Floats | tuple[Floats, NDArray[np.float64] | None]:
+        """Return where bound points go.
+
+        Parameters
+        ----------
+        bound : what `bind` returned for this map, or for one of the same weights and transform
+        out : (n, d) C-contiguous float64, optional
+            Where to write the result, which is then returned.
+        progress : callable, optional
+            Told the fraction done, from 0 to 1; what it raises stops the call.
+        """
+        positions, maps = self._core.deform(bound._core, bool(return_maps), out, progress)
+        y: Floats = positions if out is not None else positions.astype(bound._dtype, copy=False)
+        return y if return_maps is None else (y, maps)
+
+    def report(self, shape: Shape | None = None) -> Report:
+        """Return what happens to the control points; with a shape, in a file of its kind, which may round."""
+        core = self._core.report(None if shape is None else shape._file)
+        return Report(
+            tuple(core.names),
+            core.moved,
+            core.distance_to_target,
+            tuple(core.orientations),
+            core.handles,
+            core.soft,
+            tuple(core.warnings),
+        )
+
+    def advise(self, shape: Shape | ArrayLike, faces: ArrayLike | None = None) -> list[Advice]:
+        """Return what is likely bad about a deformed shape, and what would help; nothing where all moves as one.
+
+        - misses: control points that stop short of their targets;
+        - folds: places where space is turned inside out, `det J <= 0`, with `J` the Jacobian of the map;
+        - torn: places where `J` stretches far more than in most places, as between control points that move apart;
+        - ungoverned: a part that moves, and is far from all control points.
+
+        What would help was tried: another temperature, soft handles and, where neither does, shape-aware weights (if
+        SciPy is there) are named only where they at least halve it; exact handles only where they arrive.
+
+        Parameters
+        ----------
+        shape : Shape, or points (n, d)
+        faces : (f, 3) integers, optional
+            Triangles of the points; with them places are looked at by area, otherwise the points themselves.
+
+        Raises
+        ------
+        ArgumentError
+            There are no points, or a face names none.
+        """
+        x = shape.positions if isinstance(shape, Shape) else as_points("x", shape, self.session.points.dimension)
+        triangles = shape.faces if isinstance(shape, Shape) else faces
+        other = None if isinstance(self.weights, ShapeAwareWeights) else lambda: self._shape_aware(x, triangles)
+        names = self._core.session.points.names
+        return [
+            Advice(kind, sentence, tuple(where), tuple(names[i] for i in near), amount)  # type: ignore[arg-type]
+            for kind, sentence, where, near, amount in self._core.advise(x, as_indices(triangles, len(x)), other)
+        ]
+
+    def _shape_aware(self, x: NDArray[np.float64], faces: ArrayLike | None) -> _core.Map | None:
+        """The same with weights that know the shape; None where they cannot be fitted."""
+        from neuralmls.errors import NeuralMLSError
+
+        if x.shape[1] == 1:
+            return None
+        try:
+            weights = ShapeAwareWeights.fit(self._core.session.points.sources, x, faces)
+        except NeuralMLSError:  # no SciPy, or no size to measure by
+            return None
+        session = self._core.session.with_settings('{"weights": {"kind": "shape-aware"}}')
+        return _core.Map.of(session, weights._core)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the map: weights bit for bit, and the session, as a safetensors file.
+
+        Raises
+        ------
+        FileError
+            The file cannot be written; what was there is untouched.
+        """
+        write_atomically(path, self._core.to_bytes())
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Read what `save` or `neuralmls fit` wrote. Nothing in the file is executed.
+
+        Raises
+        ------
+        FileError
+            The file is missing, or is no map.
+        """
+        try:
+            return cls._of(_core.Map.from_bytes(read_bytes(as_path("path", path))))
+        except OSError as error:
+            raise FileError(f"{path}: cannot read: {error.strerror or error}") from error
+        except FileError as error:
+            raise FileError(f"{path}: {error}") from None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (self._core.to_bytes(),)
+
+
+def _restored(data: bytes) -> Map:
+    return Map._of(_core.Map.from_bytes(data))

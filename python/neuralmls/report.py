@@ -1,0 +1,62 @@
+"""What a deformation did to its control points, and what is likely bad about it; all sentences are made in crates/session."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Report:
+    """What happens to the control points, and what a person should know of it.
+
+    Attributes
+    ----------
+    names : m strings
+    moved : (m,) float64
+        How far each target is from its control point at rest.
+    distance_to_target : (m,) float64
+        How far each ends from its target, in the file as it is written.
+    orientations : m times (degrees, degrees that are missing, scale), or None of those that only move
+    handles : str
+        How closely they were met, in a few words.
+    soft : str or None
+        Why all were left soft although more was asked for, and what would help.
+    warnings : tuple of str
+    """
+
+    names: tuple[str, ...]
+    moved: NDArray[np.float64]
+    distance_to_target: NDArray[np.float64]
+    orientations: tuple[tuple[float, float, float] | None, ...]
+    handles: str
+    soft: str | None
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Advice:
+    """One thing that is likely bad about a deformation.
+
+    Attributes
+    ----------
+    kind : "misses", "folds", "torn" or "ungoverned"
+    sentence : str
+        What is likely bad, where, and what would help.
+    where : tuple of d floats
+        The worst place, at rest.
+    control_points : tuple of str
+        The names of those that it is about, the worst first.
+    amount : float
+        How bad: the greatest distance from a target (misses), the part of the shape (folds), the greatest stretch
+        (torn), the distance to the nearest control point (ungoverned).
+    """
+
+    kind: Literal["misses", "folds", "torn", "ungoverned"]
+    sentence: str
+    where: tuple[float, ...]
+    control_points: tuple[str, ...]
+    amount: float
