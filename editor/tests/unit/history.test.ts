@@ -26,7 +26,6 @@ describe("history", () => {
       rename(1, "head"),
       toggleLock([1]),
       set("temperature", 0.5),
-      set("handles", "soft"),
       set("handles", 0.5),
       set("kind", "inverse-distance"),
       setWeights("inverse-distance", { alpha: 2 }),
