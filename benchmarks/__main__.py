@@ -13,7 +13,7 @@ for _variable in ("RAYON_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"
 
 from rich.console import Console
 
-from benchmarks import definitions, machine, record, table
+from benchmarks import definitions, machine, record, table, threads
 from benchmarks.rivals import installed
 from benchmarks.row import WrongAnswer
 from benchmarks.setting import Setting
@@ -42,9 +42,10 @@ def main(arguments: list[str] | None = None) -> int:
         console.print("[yellow]the machine has other work: these times are not its best[/]")
     for rival in ("torch", "molesq"):
         if not installed(rival):
-            console.print(f"{rival}: not installed, so that its bars are not held; pip install '.[bench]'")
+            told_how = f"{rival}: not installed, so that its bars are not held; pip install './research[bench]'"
+            console.print(told_how, markup=False)  # or the brackets would be a style
     limits = machine.limits(quick=given.quick)
-    console.print(table.limits(limits, machine.THREADS))
+    console.print(table.limits(limits, threads.THREADS))
     setting = Setting(limits, given.quick)
     outcomes = []
     for name in given.only or definitions.ALL:

@@ -14,13 +14,12 @@ from time import perf_counter
 import numpy as np
 
 from benchmarks.rivals import installed
+from benchmarks.threads import THREADS
 
 SQUARE = 2048  # a matrix product of this size does little but multiply
 DRAM = 1 << 28  # bytes: far beyond any cache
 MIDDLE = 3 * 4 << 20  # bytes: a middle layer of 1024 x 1024 and its two moments
 
-# The bars are on two cores: everything that is timed may use as many threads.
-THREADS = 2
 _pool = ThreadPoolExecutor(THREADS)
 
 

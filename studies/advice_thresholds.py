@@ -1,4 +1,4 @@
-"""What `neuralmls.advise` looks at, on displacements that people made: `python -m studies.advice_thresholds FOLDER`.
+"""What `Map.advise` looks at, on displacements that people made: `python -m studies.advice_thresholds FOLDER`.
 
 The thresholds of `crates/core/src/advice.rs` lie beyond the greatest of these, so that they are silent where nothing is
 torn. FOLDER is that of `studies.exact_handles`.
@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 
 import neuralmls as nm
-from neuralmls.probe import Probe
 from studies.exact_handles import OURS, PAPER, TRAININGS, cases
 
 MOVED = 0.01  # of the longest side, as the core has it
@@ -26,14 +25,15 @@ def main() -> None:
         longest = np.linalg.norm(found.q - found.p, axis=1).max()
         for training in (PAPER, OURS):
             weights = nm.NeuralWeights.fit(found.p, bounds=found.shape.bounds, **TRAININGS[training])
-            probe = Probe(found.shape.positions, found.shape.faces, weights, found.q)
-            for adherence in (0.0, 1.0):
-                positions, determinants, stretches = probe.core.look(probe.q, probe.turns, 1.0, adherence)
-                moves = np.linalg.norm(positions - probe.places, axis=1) > MOVED * probe.side
-                short = probe.missed(1.0, adherence).max() / longest
-                print(f"| {found.title}, {training.partition(':')[0]}, adherence {adherence:g} | {short:.3f} ", end="")
-                folded, far = (determinants <= 0).mean(), probe.core.far()[moves].max()
-                print(f"| {folded:.4f} | {stretches.max():.2f} | {far:.2f} |")
+            points, side = nm.ControlPoints(found.p, found.q), np.ptp(found.shape.bounds, axis=0).max()
+            for handles in ("soft", "exact"):
+                map = nm.Map.of(nm.Session(points, handles=handles), weights)
+                look = map.look(found.shape)
+                moves = np.linalg.norm(look.positions - look.places, axis=1) > MOVED * side
+                short = map.report().distance_to_target.max() / longest
+                print(f"| {found.title}, {training.partition(':')[0]}, {handles} handles | {short:.3f} ", end="")
+                folded, far = (look.determinants <= 0).mean(), look.spacings[moves].max()
+                print(f"| {folded:.4f} | {look.stretches.max():.2f} | {far:.2f} |")
 
 
 if __name__ == "__main__":

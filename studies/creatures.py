@@ -15,8 +15,8 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
 
-from neuralmls.experiments.methods import Surface
-from neuralmls.experiments.poses import Poses
+from neuralmls_research.experiments.methods import Surface
+from neuralmls_research.experiments.poses import Poses
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

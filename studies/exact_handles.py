@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 import neuralmls as nm
 from neuralmls import samples
-from neuralmls.experiments.published import published
-from neuralmls.metrics import measure
+from neuralmls_research.experiments.published import published
+from neuralmls_research.metrics import measure
 
 Array = NDArray[np.float64]
 

@@ -8,10 +8,9 @@ from pathlib import Path
 import numpy as np
 from creatures import creature
 
-from neuralmls.control_points import ControlPoints
-from neuralmls.experiments.methods import METHODS
+from neuralmls import ControlPoints, farthest_of
 from neuralmls.figures.render import Panel, render
-from neuralmls.placement import farthest_of
+from neuralmls_research.experiments.methods import METHODS
 
 # A creature, how many control points, which of its poses.
 PICTURES = {

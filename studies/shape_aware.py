@@ -20,11 +20,10 @@ import numpy as np
 from creatures import Array, creature, free, inside, paired
 from numpy.typing import ArrayLike, NDArray
 
-from neuralmls import Deformer, NotApplicable
-from neuralmls.experiments.poses import POSE_METHODS, Poses, pose_errors
-from neuralmls.placement import farthest_of
+from neuralmls import Deformer, NotApplicable, farthest_of
 from neuralmls.weights import shape_aware, surface_graph
 from neuralmls.weights.surface_graph import Reach, SurfaceGraph
+from neuralmls_research.experiments.poses import POSE_METHODS, Poses, pose_errors
 
 COUNTS = (12, 40)
 RIVALS = ("rbf", "classic", "arap")

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 import neuralmls as nm
-from neuralmls.control_points import ControlPoints
+from neuralmls import ControlPoints
 from neuralmls.samples import make
 
 TURNED = {"armrest-left": (0, 1, 0), "back-top-left": (1, 0, 0), "back-left-foot": (0, 1, 0)}
@@ -27,7 +27,7 @@ def main() -> None:
     w = nm.softmax(weights.logits(points.sources))
     print("| turned | u | rho | missing there | most elsewhere |\n|---|---|---|---|---|")
     for name, axis in TURNED.items():
-        turned = points.turned({name: nm.Turn(axis, DEGREES)})
+        turned = points.oriented({name: nm.Orientation(axis, DEGREES)})
         i = points.names.index(name)
         for power in POWERS:
             for size in SIZES:

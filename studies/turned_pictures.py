@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import neuralmls as nm
-from neuralmls.control_points import ControlPoints
+from neuralmls import ControlPoints
 from neuralmls.figures.render import Panel, render
 from neuralmls.samples import make
 
@@ -37,7 +37,7 @@ def main(folder: Path) -> None:
     x, points = sample.vertices, ControlPoints(sample.control_points.sources, names=sample.control_points.names)
     panels = []
     for title, turns in CHAIR.items():
-        held = points.turned({name: nm.Turn(axis, degrees) for name, (axis, degrees) in turns.items()})
+        held = points.oriented({name: nm.Orientation(axis, degrees) for name, (axis, degrees) in turns.items()})
         panels.append(Panel(title, deformed(x, held), sample.triangles, colours=sample.colours))
     render(panels, folder / "turned-chair.png", control_points=points, width=1400)
 
@@ -47,14 +47,14 @@ def main(folder: Path) -> None:
         places = {"low": 0.0, "middle": 0.5, "high": 1.0}
         names = [name for name in places if name in degrees or name != "middle"]
         held = ControlPoints([[0, places[name], 0] for name in names], names=names)
-        held = held.turned({name: nm.Turn((0, 1, 0), angle) for name, angle in degrees.items()})
+        held = held.oriented({name: nm.Orientation((0, 1, 0), angle) for name, angle in degrees.items()})
         panels.append(Panel(title, deformed(x, held), faces))
     render(panels, folder / "twisted-bar.png", control_points=ControlPoints([[0, 0, 0], [0, 1, 0]]), width=1200)
 
 
 def deformed(x: np.ndarray, points: ControlPoints) -> np.ndarray:
     """Where the points go, exactly and rigidly."""
-    return nm.deform(x, points.sources, points.targets, rotations=points.rotations, scales=points.scales, exact=True)
+    return nm.deform(x, points.sources, points.targets, rotations=points.rotations, scales=points.scales, handles="exact")
 
 
 def bar() -> tuple[np.ndarray, np.ndarray]:

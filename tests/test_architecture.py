@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+import neuralmls
+
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "python" / "neuralmls"
 
@@ -72,6 +74,61 @@ def test_crates_depend_only_on_what_lies_below_them(manifest):
     assert paths <= allowed()[crate]
 
 
+def imports(path: Path) -> list[tuple[str, str | None]]:
+    """Modules of this repository that a file imports, each with the name that it takes from it, if it takes one."""
+    found: list[tuple[str, str | None]] = []
+    tree = ast.parse(path.read_text())
+    whole = {
+        alias.asname or alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Import)
+        for alias in node.names
+        if alias.name == "neuralmls"
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom):
+            found += [(node.module or "", alias.name) for alias in node.names]
+        elif isinstance(node, ast.Import):
+            found += [(alias.name, None) for alias in node.names]
+        elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in whole:
+            found.append(("neuralmls", node.attr))
+    return [(module, name) for module, name in found if module.partition(".")[0] in ("neuralmls", "neuralmls_research")]
+
+
+def is_public(module: str, name: str | None, modules: set[str]) -> bool:
+    """Whether it is a name of `neuralmls` itself, or one of these modules' or of those below them."""
+    if module == "neuralmls" and name is not None:
+        return name in neuralmls.__all__ or f"neuralmls.{name}" in modules
+    if (name is not None and name.startswith("_")) or "._" in module:
+        return False
+    return any(f"{module}.".startswith(f"{other}.") for other in modules if other != "neuralmls" or module == other)
+
+
+@pytest.mark.parametrize("folder", ["research/neuralmls_research", "benchmarks"])
+def test_packages_of_their_own_use_public_names_only(folder):
+    package = Path(folder).parts[0]
+    modules = allowed()[package] | ({"neuralmls_research"} if package == "research" else set())
+    used = {found for path in (ROOT / folder).rglob("*.py") for found in imports(path)}
+    assert used
+    assert not [found for found in used if not is_public(*found, modules)]
+
+
+def test_what_is_private_is_known_from_what_is_public():
+    modules = {"neuralmls", "neuralmls.figures", "neuralmls.cli.plugin"}
+    for module, name in (("neuralmls", None), ("neuralmls", "Deformer"), ("neuralmls", "__version__"),
+                         ("neuralmls.figures.render", "Panel"), ("neuralmls.cli.plugin", "console")):  # fmt: skip
+        assert is_public(module, name, modules), (module, name)
+    for module, name in (("neuralmls", "_core"), ("neuralmls._core", "fit"), ("neuralmls", "arrays"),
+                         ("neuralmls.cli", "console"), ("neuralmls.figures.render", "_check"),
+                         ("neuralmls.figures_more", "x"), ("neuralmls.deformer", "Deformer")):  # fmt: skip
+        assert not is_public(module, name, modules), (module, name)
+
+
+def test_the_versions_of_the_packages_are_one():
+    research = tomllib.loads((ROOT / "research" / "pyproject.toml").read_text())
+    assert research["project"]["version"] == neuralmls.__version__
+
+
 def test_every_line_is_about_something_that_is_there():
     for name in allowed():
         assert (ROOT / name).is_dir() or name in parts() or (PACKAGE / f"{name}.pyi").is_file(), name
@@ -80,7 +137,7 @@ def test_every_line_is_about_something_that_is_there():
 def test_every_folder_has_a_line():
     text = (ROOT / "ARCHITECTURE.md").read_text()
     folders = {path.parent for path in ROOT.glob("crates/*/src")} | {
-        ROOT / name for name in ("fuzz", "tests", "docs") if (ROOT / name).is_dir()
+        ROOT / name for name in ("fuzz", "research", "tests", "docs") if (ROOT / name).is_dir()
     }
     for folder in folders:
         assert f"`{folder.relative_to(ROOT)}`" in text, folder

@@ -15,7 +15,7 @@ from benchmarks.inputs import Array
 from benchmarks.measure import Contender, interleaved
 from benchmarks.row import Outcome, Row, check
 from benchmarks.setting import Setting
-from neuralmls.metrics import curvature_change
+from neuralmls_research.metrics import curvature_change
 from studies.exact_handles import Case, cases
 
 SECONDS = {12: 1e-3, 100: 10e-3}

@@ -14,7 +14,7 @@ from benchmarks.inputs import SEED
 from benchmarks.measure import Contender, interleaved
 from benchmarks.row import Outcome, Row, check
 from benchmarks.setting import Setting
-from neuralmls.metrics import Measures, measure
+from neuralmls_research.metrics import Measures, measure
 from studies.exact_handles import Case, cases
 
 SECONDS = 3.0

@@ -4,5 +4,5 @@ from importlib.util import find_spec
 
 
 def installed(name: str) -> bool:
-    """Whether a rival's package is there (the extra `bench` installs all of them)."""
+    """Whether a rival's package is there (`bench` of research/pyproject.toml installs all of them)."""
     return find_spec(name) is not None

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from torch import nn
 
 from benchmarks.inputs import Network
-from benchmarks.machine import THREADS
+from benchmarks.threads import THREADS
 
 torch.set_num_threads(THREADS)
 CHUNKS = (4096, 8192, 16384, 32768)

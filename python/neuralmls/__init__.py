@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from neuralmls.map import Map
     from neuralmls.orientations import Orientation
     from neuralmls.pipeline import deform
-    from neuralmls.placement import farthest_points
+    from neuralmls.placement import farthest_of, farthest_points
     from neuralmls.point_tree import PointTree
     from neuralmls.report import Advice, Report
     from neuralmls.session import Session
@@ -59,6 +59,7 @@ __all__ = [
     "__version__",
     "advise",
     "deform",
+    "farthest_of",
     "farthest_points",
     "read",
     "softmax",
@@ -90,6 +91,7 @@ _HOMES = {
     "Weights": "weights",
     "advise": "advice",
     "deform": "pipeline",
+    "farthest_of": "placement",
     "farthest_points": "placement",
     "read": "shape",
     "softmax": "weights.softmax",

@@ -1,9 +1,15 @@
-"""Files that a shape names: they go where it goes, so that it opens there with its materials and textures."""
+"""Files that a shape names: they go where it goes, so that it opens there with its materials and textures.
+
+A name is read with either slash. What leaves the shape's folder (`..`, an absolute path, a symbolic link that leads out)
+is refused by name: an unpacked archive must not make us copy or serve any file of its reader's.
+"""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
 from neuralmls.errors import FileError
@@ -11,6 +17,52 @@ from neuralmls.files import read_bytes
 
 # Statements of an MTL file that name an image: all that start with `map_`, and these.
 _IMAGES = {"bump", "disp", "decal", "refl", "norm"}
+# The options that stand before the name, each with its values.
+_OPTIONS = re.compile(r"(?:-\w+\s+(?:(?:on|off|[-+]?\.?\d[-+.\deE]*|[rgbmlz]|sphere|cube_\w+)\s+)*)*")
+
+
+@dataclass(frozen=True)
+class Companions:
+    """What became of the names in a shape's file."""
+
+    found: dict[str, Path] = field(default_factory=dict)
+    """Files in its folder, by those names."""
+    missing: list[str] = field(default_factory=list)
+    """Names of files that are not there."""
+    refused: list[str] = field(default_factory=list)
+    """Names that lead out of its folder."""
+
+    @property
+    def warnings(self) -> list[str]:
+        """A sentence for each that does not go along."""
+        return [
+            *(f"'{name}', which the shape names, is not there: it goes without" for name in self.missing),
+            *(f"'{name}', which the shape names, leads out of its folder: it is left behind" for name in self.refused),
+        ]
+
+
+def find_beside(names: list[str], missing: Callable[[list[str]], list[str]], folder: Path) -> Companions:
+    """Look for the files that a shape in `folder` names, and for the images that its material libraries name.
+
+    `missing` tells which of the names are missing, given those that are there: one name may be read in several ways.
+    """
+    found: dict[str, Path] = {}
+    refused: list[str] = []
+
+    def look(name: str) -> bool:
+        if name not in found and name not in refused:
+            if _leads_out(folder, name):
+                refused.append(name)
+            elif (path := _inside(folder, name)) is not None and path.is_file():
+                found[name] = path
+        return name in found or name in refused
+
+    gone = missing([name for name in names if look(name)])
+    for library in [path for path in found.values() if path.suffix.lower() == ".mtl"]:
+        for readings in _images(library, folder):
+            if not any([look(image) for image in readings[:-1]]) and not look(readings[-1]) and readings[-1] not in gone:
+                gone.append(readings[-1])
+    return Companions(found, gone, refused)
 
 
 def read_beside(folder: Path, name: str) -> bytes:
@@ -19,27 +71,19 @@ def read_beside(folder: Path, name: str) -> bytes:
     Raises
     ------
     FileError
-        The name leaves the folder, or the file cannot be read.
+        The name leads out of the folder, or the file cannot be read.
     """
     path = _inside(folder, name)
-    if path is None:
+    if path is None or _leads_out(folder, name):
         raise FileError(f"'{name}' leaves the shape's folder")
     try:
-        return read_bytes(path)
+        return read_bytes(Path(os.path.realpath(path)), links=False)
     except OSError as error:
         raise FileError(f"cannot read '{name}' beside it: {error.strerror or error}") from error
 
 
-def found_beside(names: list[str], folder: Path) -> dict[str, Path]:
-    """The files of a folder that are named, and images that they name; not what is missing or leaves the folder."""
-    paths = {name: _inside(folder, name) for name in [*names, *_images(names, folder)]}
-    return {name: path for name, path in paths.items() if path is not None and path.is_file()}
-
-
-def to_copy(names: list[str], source: Path, target: Path) -> tuple[dict[Path, Path], list[str]]:
-    """What of the named files of folder `source`, and images that they name, is to be copied into folder `target`.
-
-    What is missing at the source, or leaves its folder, is passed over; what is there already stays as it is.
+def to_copy(found: dict[str, Path], source: Path, target: Path) -> tuple[dict[Path, Path], list[str]]:
+    """What of the files found in folder `source` is to be copied into folder `target`; what is there already stays as it is.
 
     Returns
     -------
@@ -49,12 +93,10 @@ def to_copy(names: list[str], source: Path, target: Path) -> tuple[dict[Path, Pa
         return {}, []
     copies: dict[Path, Path] = {}
     warnings = []
-    for name, here in found_beside(names, source).items():
-        there = _inside(target, name)
-        if there is None:
-            continue
+    for here in found.values():
+        there = target / here.relative_to(source)
         if not os.path.lexists(there):
-            copies[there] = here
+            copies[there] = Path(os.path.realpath(here))
         elif not _same_content(here, there):
             warnings.append(f"{there}: kept, although it is not the '{here}' that the shape names")
     return copies, warnings
@@ -77,31 +119,57 @@ def make_folders(files: Iterable[Path]) -> None:
 
 def _same_content(one: Path, other: Path) -> bool:
     try:
-        return one.samefile(other) or one.read_bytes() == other.read_bytes()
-    except OSError:  # a folder, a link to nothing
+        return one.samefile(other) or read_bytes(one) == read_bytes(other)
+    except OSError:  # a folder, a pipe, a link to nothing
         return False
 
 
-def _images(names: list[str], folder: Path) -> list[str]:
-    """The images that material libraries among the named files name, relative to the shape."""
+def _images(library: Path, folder: Path) -> list[list[str]]:
+    """The images that a material library names, relative to the shape: for each all readings of its statement, the likeliest last.
+
+    Options stand before the name, which may have spaces itself.
+    """
+    try:
+        text = read_bytes(Path(os.path.realpath(library)), links=False).decode(errors="replace")
+    except OSError:
+        return []
+    beside = PurePosixPath(library.relative_to(folder).as_posix()).parent
     images = []
-    for name in names:
-        library = _inside(folder, name)
-        if library is None or library.suffix.lower() != ".mtl" or not library.is_file():
-            continue
-        for line in library.read_text(errors="replace").splitlines():
-            keyword, _, rest = line.strip().partition(" ")
-            if keyword.lower().startswith("map_") or keyword.lower() in _IMAGES:
-                # Options stand before the name, which may have spaces itself.
-                words = rest.split()
-                found = (" ".join(words[i:]) for i in range(len(words)))
-                images += [str(PurePosixPath(name).parent / image.replace("\\", "/")) for image in found]
+    for line in text.splitlines():
+        keyword, _, rest = line.strip().partition(" ")
+        if keyword.lower().startswith("map_") or keyword.lower() in _IMAGES:
+            rest = rest.strip()
+            likely = rest[len(_OPTIONS.match(rest + " ")[0]) :] or rest  # type: ignore[index]
+            words = rest.split()
+            readings = [*(" ".join(words[i:]) for i in range(len(words))), likely]
+            if likely:
+                images.append([str(beside / reading.replace("\\", "/")) for reading in readings])
     return images
 
 
 def _inside(folder: Path, name: str) -> Path | None:
-    """The path of a name that stays in its folder."""
-    relative = PurePosixPath(name)
-    if relative.is_absolute() or ".." in relative.parts or ":" in name or "\0" in name or not relative.parts:
+    """The path of a name that stays in its folder, by its words; with backslashes where no file has them in its name."""
+    if not name or ":" in name or "\0" in name:
         return None
-    return folder.joinpath(*relative.parts)
+    relative = PurePosixPath(name.replace("\\", "/"))
+    if relative.is_absolute() or ".." in relative.parts or not relative.parts:
+        return None
+    literal = folder / name
+    return literal if "\\" in name and literal.is_file() else folder.joinpath(*relative.parts)
+
+
+def _leads_out(folder: Path, name: str) -> bool:
+    """Whether a name is that of something there which is not within the folder."""
+    path = _inside(folder, name)
+    if path is None:
+        outside = folder / name.replace("\\", "/") if name and "\0" not in name else None
+        try:
+            return outside is not None and outside.is_file()
+        except OSError:
+            return False
+    try:
+        if not os.path.lexists(path):
+            return False
+        return not path.resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError):  # a link to itself
+        return True

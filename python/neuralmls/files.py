@@ -1,10 +1,9 @@
-"""Writing files so that nobody ever finds half of one: write beside, then rename."""
+"""Files: read without waiting for what never comes, written so that nobody ever finds half of one."""
 
 from __future__ import annotations
 
 import io
 import os
-import secrets
 import shutil
 import stat
 from collections.abc import Iterator, Mapping
@@ -12,7 +11,12 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
+from neuralmls import leftovers
 from neuralmls.errors import ArgumentError, FileError
+
+# Neither waits for somebody to write into a pipe, nor is swapped for a link between a check and the opening.
+_WITHOUT_WAITING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
+_NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 
 
 def as_path(name: str, path: str | os.PathLike[str]) -> Path:
@@ -31,18 +35,31 @@ def as_path(name: str, path: str | os.PathLike[str]) -> Path:
         raise ArgumentError(f"{name}: expected the path of a file, found {path!r}") from None
 
 
-def read_bytes(path: Path) -> bytes:
-    """Return the content of a file or pipe.
+def read_bytes(path: Path, *, links: bool = True) -> bytes:
+    """Return the content of a file, or of a pipe that the shell made (`<(...)`, /dev/stdin).
+
+    Parameters
+    ----------
+    links : whether `path` may itself be a symbolic link
 
     Raises
     ------
     OSError
-        It cannot be read; or it is a device, which may have no end.
+        It cannot be read; or it is a device or another pipe, which may have no end.
     """
-    mode = path.stat().st_mode
-    if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
-        raise OSError("this is a device, not a file")
-    return path.read_bytes()
+    flags = os.O_RDONLY | _WITHOUT_WAITING | (0 if links else getattr(os, "O_NOFOLLOW", 0))
+    descriptor = os.open(path, flags)
+    with open(descriptor, "rb") as file:
+        mode = os.fstat(descriptor).st_mode
+        if stat.S_ISDIR(mode):
+            raise OSError("this is a folder, not a file")
+        if stat.S_ISFIFO(mode) and links and path.parts[:2] in {("/", "dev"), ("/", "proc")}:
+            os.set_blocking(descriptor, True)
+        elif stat.S_ISFIFO(mode):
+            raise OSError("this is a pipe, not a file")
+        elif not stat.S_ISREG(mode):
+            raise OSError("this is a device, not a file")
+        return file.read()
 
 
 def write_atomically(path: str | os.PathLike[str], data: bytes) -> None:
@@ -82,12 +99,15 @@ def write_together(files: Mapping[Path, bytes | Path]) -> None:
                     with open(target, "wb") as pipe:
                         shutil.copyfileobj(source, pipe)
                     continue
-                beside = target.with_name(f".{target.name[:40]}.{secrets.token_hex(4)}.part")
+                leftovers.remove(target.parent)
+                beside = leftovers.beside(target)
                 complete.append((path, beside, target))
                 _write_new(beside, source, mode)
         for path, beside, target in complete:
             with _naming(path):
                 os.replace(beside, target)
+        for folder in {target.parent for _, _, target in complete}:
+            _sync(folder)
     finally:
         for _, beside, _ in complete:
             with suppress(OSError):
@@ -106,7 +126,7 @@ def _opened(content: bytes | Path) -> BinaryIO:
     if isinstance(content, bytes):
         return io.BytesIO(content)
     try:
-        return open(content, "rb")
+        return io.BytesIO(read_bytes(content, links=False))
     except OSError as error:
         raise FileError(f"{content}: cannot read: {error.strerror or error}") from error
 
@@ -122,10 +142,21 @@ def _mode(path: Path, target: Path) -> int | None:
 
 
 def _write_new(path: Path, source: BinaryIO, mode: int | None) -> None:
-    """Write a file that is not there yet, with the permissions of the one that it is to replace."""
-    with open(path, "xb") as file:
+    """Write a file that is not there yet, from its creation on with the permissions of the one that it is to replace."""
+    permissions = 0o666 if mode is None else stat.S_IMODE(mode)
+    with open(os.open(path, _NEW, permissions & 0o777), "wb") as file:
+        if mode is not None:
+            os.chmod(path if os.chmod not in os.supports_fd else file.fileno(), permissions)  # what the umask took
         shutil.copyfileobj(source, file)
         file.flush()
         os.fsync(file.fileno())  # a full disk must show here, before the rename
-    if mode is not None:
-        path.chmod(stat.S_IMODE(mode))
+
+
+def _sync(folder: Path) -> None:
+    """Make the new names in a folder last, where the system can: a name may be lost in a power cut until then."""
+    with suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)

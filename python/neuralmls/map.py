@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from neuralmls import _core
+from neuralmls import _core as core  # where a class has an attribute of that name
 from neuralmls.arrays import Progress, as_points
 from neuralmls.control_points import ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import FileError
 from neuralmls.files import as_path, read_bytes, write_atomically
 from neuralmls.placement import as_indices
-from neuralmls.report import Advice, Report
+from neuralmls.report import Advice, Look, Report
 from neuralmls.shape import Shape
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
 
@@ -43,12 +44,12 @@ class Map:
     [[1.0, 0.5]]
     """
 
-    _core: _core.Map
+    _core: core.Map
 
     @classmethod
-    def _of(cls, core: _core.Map) -> Self:
+    def _of(cls, made: core.Map) -> Self:
         self = cls.__new__(cls)
-        self._core = core
+        self._core = made
         return self
 
     @classmethod
@@ -156,35 +157,15 @@ class Map:
         transform = json.loads(self._core.session.settings)["transform"]
         return Deformer(x, self.weights, transform=transform, progress=progress)
 
-    @overload
     def frame(
         self,
         bound: Deformer,
         *,
-        return_maps: Literal[False] = ...,
-        out: NDArray[np.float64] | None = ...,
-        progress: Progress | None = ...,
-    ) -> Floats: ...
-
-    @overload
-    def frame(
-        self,
-        bound: Deformer,
-        *,
-        return_maps: bool,
-        out: NDArray[np.float64] | None = ...,
-        progress: Progress | None = ...,
-    ) -> tuple[Floats, NDArray[np.float64] | None]: ...
-
-    def frame(
-        self,
-        bound: Deformer,
-        *,
-        return_maps: bool | None = None,
+        return_maps: bool = False,
         out: NDArray[np.float64] | None = None,
         progress: Progress | None = None,
-    ) -> Floats | tuple[Floats, NDArray[np.float64] | None]:
-        """Return where bound points go.
+    ) -> tuple[Floats, NDArray[np.float64] | None]:
+        """Return where bound points go, and the local maps (n, d, d) if they are asked for, else None.
 
         Parameters
         ----------
@@ -194,9 +175,9 @@ class Map:
         progress : callable, optional
             Told the fraction done, from 0 to 1; what it raises stops the call.
         """
-        positions, maps = self._core.deform(bound._core, bool(return_maps), out, progress)
+        positions, maps = self._core.deform(bound._core, return_maps, out, progress)
         y: Floats = positions if out is not None else positions.astype(bound._dtype, copy=False)
-        return y if return_maps is None else (y, maps)
+        return y, maps
 
     def report(self, shape: Shape | None = None) -> Report:
         """Return what happens to the control points; with a shape, in a file of its kind, which may round."""
@@ -242,7 +223,19 @@ class Map:
             for kind, sentence, where, near, amount in self._core.advise(x, as_indices(triangles, len(x)), other)
         ]
 
-    def _shape_aware(self, x: NDArray[np.float64], faces: ArrayLike | None) -> _core.Map | None:
+    def look(self, shape: Shape | ArrayLike, faces: ArrayLike | None = None) -> Look:
+        """Return what the map does at 4,000 places of a shape: what `advise` judges by.
+
+        Raises
+        ------
+        ArgumentError
+            There are no points, or a face names none.
+        """
+        x = shape.positions if isinstance(shape, Shape) else as_points("x", shape, self.session.points.dimension)
+        triangles = shape.faces if isinstance(shape, Shape) else faces
+        return Look(*self._core.look(x, as_indices(triangles, len(x))))
+
+    def _shape_aware(self, x: NDArray[np.float64], faces: ArrayLike | None) -> core.Map | None:
         """The same with weights that know the shape; None where they cannot be fitted."""
         from neuralmls.errors import NeuralMLSError
 

@@ -60,3 +60,26 @@ class Advice:
     where: tuple[float, ...]
     control_points: tuple[str, ...]
     amount: float
+
+
+@dataclass(frozen=True)
+class Look:
+    """A map looked at in places all over a shape.
+
+    Attributes
+    ----------
+    places, positions : (k, d) float64
+        Where they are at rest, and where they go.
+    determinants : (k,) float64
+        `det J` of the map's Jacobian; 0 or less where space is turned inside out.
+    stretches : (k,) float64
+        The greatest stretch, in that of most places if that is above 1.
+    spacings : (k,) float64
+        How far each is from the nearest control point, in the median distance of a control point to the next one.
+    """
+
+    places: NDArray[np.float64]
+    positions: NDArray[np.float64]
+    determinants: NDArray[np.float64]
+    stretches: NDArray[np.float64]
+    spacings: NDArray[np.float64]

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from neuralmls import _core
 from neuralmls.arrays import as_points
-from neuralmls.companions import found_beside, make_folders, read_beside, to_copy
+from neuralmls.companions import Companions, find_beside, make_folders, read_beside, to_copy
 from neuralmls.errors import ArgumentError, FileError
 from neuralmls.files import as_path, read_bytes, write_together
 
@@ -28,6 +28,8 @@ class Shape:
         self._positions = file.positions()
         self._positions.flags.writeable = False
         self._faces = file.faces()
+        self._bounds = file.bounds()
+        self._bounds.flags.writeable = False
 
     @property
     def path(self) -> Path:
@@ -41,7 +43,7 @@ class Shape:
 
     @property
     def extensions(self) -> list[str]:
-        """The endings of files of this format, without the dot."""
+        """The endings that the file may be written with, without the dot: those of its format, and its own."""
         return self._file.extensions
 
     @property
@@ -56,8 +58,28 @@ class Shape:
 
     @property
     def bounds(self) -> NDArray[np.float64]:
-        """The box of the positions: least and greatest corner, (2, d)."""
-        return np.stack([self._positions.min(axis=0), self._positions.max(axis=0)])
+        """The box of the positions: least and greatest corner, (2, d), read-only."""
+        return self._bounds
+
+    def round(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Return points, (n, d), as the file holds them once it is written: 32-bit floats, digits, whole numbers.
+
+        As many points as the shape has positions are taken for these: they become exactly what reading the written file
+        gives. Others are places anywhere, as a vertex there would be held.
+
+        Raises
+        ------
+        ArgumentError
+            They do not fit the shape, or the file cannot hold one.
+        """
+        return self._file.round(as_points("points", points, self._positions.shape[1]))
+
+    def step(self) -> float:
+        """Return the largest distance between neighbouring numbers of the file's type at the shape's coordinates.
+
+        0 where it holds doubles, or text, which is written as precisely as the shape needs.
+        """
+        return self._file.step()
 
     @property
     def facts(self) -> list[tuple[str, str]]:
@@ -72,7 +94,11 @@ class Shape:
     @property
     def companions(self) -> dict[str, Path]:
         """The files beside it that it names (materials, textures, buffers) and that are there, by those names."""
-        return found_beside(self._file.named_files, self._path.parent)
+        return self.look_beside().found
+
+    def look_beside(self) -> Companions:
+        """Look for the files that it names: which are there now, which are missing, which lead out of its folder."""
+        return find_beside(self._file.named_files, lambda found: self._file.missing_files(set(found)), self._path.parent)
 
     def side_files(self, stem: str) -> list[str]:
         """The files (glTF buffers) that `write` may write beside a file called after `stem` if the shape has moved."""
@@ -109,11 +135,11 @@ class Shape:
 
         Side files whose content changes are called after it (`bent.gltf`: `bent.bin`). Files that the shape names
         (materials, textures) are copied along into another folder, where they are not there yet; one that is there with
-        another content is kept, and a warning names it.
+        another content is kept, and a warning names it, as it names what is missing or leads out of the shape's folder.
 
         Parameters
         ----------
-        path : where to, with an ending of the same format
+        path : where to, with the file's own ending or another of its format
         positions : (n, d), in the units and order of `positions`
         maps : (n, d, d), optional
             The local maps of the deformation (`Deformer.deform(..., return_maps=True)`): normals turn by their inverse
@@ -134,20 +160,21 @@ class Shape:
         """
         target = as_path("path", path)
         if target.suffix[1:].lower() not in self.extensions:
-            endings = ", ".join(f".{ending}" for ending in self.extensions)
+            endings = ", ".join(f".{ending}" for ending in self.extensions if ending)
             raise FileError(f"{target}: expected the ending {endings}, a file of the format {self.format} stays one")
         data, side_files = self._encode(positions, maps, target.stem)
         sides = {target.parent / name: content for name, _, content in side_files}
         for file in [target, *sides]:
-            if not overwrite and file.is_file():  # a pipe holds nothing that could be lost
+            if not overwrite and os.path.isfile(file):  # a pipe holds nothing that could be lost
                 raise ArgumentError(f"{file}: there is such a file already")
         replaced = {was for _, was, _ in side_files}
-        named = [name for name in self._file.named_files if name not in replaced]
-        found, kept = to_copy(named, self._path.parent, target.parent)
-        copies = {there: here for there, here in found.items() if there != target and there not in sides}
+        beside = self.look_beside()
+        named = {name: file for name, file in beside.found.items() if name not in replaced}
+        to_go, kept = to_copy(named, self._path.parent, target.parent)
+        copies = {there: here for there, here in to_go.items() if there != target and there not in sides}
         make_folders(copies)
         write_together({**copies, **sides, target: data})  # the shape last: whoever finds it, finds all that it needs
-        for sentence in kept:  # at the end: where warnings are errors, all is written first
+        for sentence in [*kept, *beside.warnings]:  # at the end: where warnings are errors, all is written first
             warnings.warn(sentence, stacklevel=2)
         return [target, *sides, *copies]
 
@@ -158,12 +185,14 @@ def _sayable(name: str) -> str:
 
 
 def read(path: str | os.PathLike[str]) -> Shape:
-    """Read a shape: OBJ, PLY, OFF, STL, glTF, GLB, XYZ, TXT, CSV or NPY.
+    """Read a shape: OBJ, PLY, OFF, STL, glTF, GLB, NPY or a table of numbers (XYZ, TXT, CSV, ASC, PTS).
 
     Raises
     ------
     FileError
         The file is missing, broken or of a kind that is not read; the message names the line or byte.
+    MemoryError
+        There is not enough memory for it.
     ArgumentError
         `path` is none.
     """
@@ -172,8 +201,21 @@ def read(path: str | os.PathLike[str]) -> Shape:
         data = read_bytes(source)
     except OSError as error:
         raise FileError(f"{source}: cannot read: {error.strerror or error}") from error
+    return decode(data, source)
+
+
+def decode(data: bytes, path: Path) -> Shape:
+    """Read a shape from the bytes of a file; `path` says its ending, and where the files beside it are.
+
+    Raises
+    ------
+    FileError
+        They are broken or of a kind that is not read; the message names the line or byte.
+    MemoryError
+        There is not enough memory for it.
+    """
     try:
-        file = _core.ShapeFile(data, source.suffix[1:], lambda name: read_beside(source.parent, name))
+        file = _core.ShapeFile(data, path.suffix[1:], lambda name: read_beside(path.parent, name))
     except FileError as error:
-        raise FileError(f"{source}: {error}") from None
-    return Shape(source, file)
+        raise FileError(f"{path}: {error}") from None
+    return Shape(path, file)

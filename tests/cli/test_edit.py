@@ -37,10 +37,10 @@ def test_it_serves_the_shape_until_it_is_interrupted(built, start):
     (built / "oak grain.png").write_bytes(b"png")
     with start("edit", "shape.obj", "--points", "points.csv", "--no-browser", program=PROGRAM) as running:
         line = running.stderr.readline().decode()
-        found = re.search(r"http://127\.0\.0\.1:(\d+)/\?session", line)
+        found = re.search(r"http://127\.0\.0\.1:(\d+)(/[\w-]{20,}/)\?session", line)
         assert found, line
         connection = http.client.HTTPConnection("127.0.0.1", int(found[1]), timeout=10)
-        connection.request("GET", "/session.json")
+        connection.request("GET", f"{found[2]}session.json")
         listed = json.loads(connection.getresponse().read())
         connection.close()
         running.send_signal(signal.SIGINT)
@@ -48,6 +48,17 @@ def test_it_serves_the_shape_until_it_is_interrupted(built, start):
     assert [file["name"] for file in listed["files"]] == ["shape.obj", "shape.mtl", "oak grain.png"]
     assert listed["points"]["name"] == "points.csv"
     assert (running.returncode, out, err) == (0, b"", b"neuralmls: stopped\n")
+
+
+def test_the_browser_is_started_with_an_address_that_serves_once(built, run, monkeypatch):
+    started = []
+    monkeypatch.setattr("webbrowser.open", lambda url: not started.append(url))
+    monkeypatch.setattr(server.EditorServer, "serve_forever", lambda self: started.append(self.token))
+    ran = run("edit", "shape.obj")
+    url, token = started
+    assert ran.code == 0
+    assert token in ran.err
+    assert token not in url
 
 
 def test_broken_input_is_refused_before_anything_is_served(built, refused):

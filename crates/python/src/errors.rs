@@ -32,6 +32,7 @@ pub(crate) fn from_core(error: neuralmls_core::Error, cause: Option<PyErr>) -> P
 pub(crate) fn from_shapes(error: &neuralmls_shapes::Error) -> PyErr {
     match error.kind {
         neuralmls_shapes::ErrorKind::Argument => argument(error.message.clone()),
+        neuralmls_shapes::ErrorKind::Memory => PyMemoryError::new_err(error.message.clone()),
         _ => exception("FileError", error.to_string()),
     }
 }

@@ -73,13 +73,15 @@ impl Map {
 
     /// What happens to the control points, in the file of a shape where one is given.
     fn report(&self, py: Python<'_>, shape: Option<&ShapeFile>) -> PyResult<Report> {
+        let held = shape.map(|shape| (&shape.0, shape.0.step().unwrap_or(0.0)));
         py.detach(|| {
             let aim = self.0.aim()?;
-            let Some(shape) = shape else {
+            let Some((shape, step)) = held else {
                 return self.0.report(&aim, None);
             };
-            let round = |places: &[f64]| places.to_vec();
-            self.0.report(&aim, Some(&Held { format: shape.0.format().name(), round: &round, step: 0.0 }))
+            // What the file cannot hold at all is refused when it is written.
+            let round = |places: &[f64]| shape.round(places).unwrap_or_else(|_| places.to_vec());
+            self.0.report(&aim, Some(&Held { format: shape.format().name(), round: &round, step }))
         })
         .map(Report)
         .map_err(raised)

@@ -8,6 +8,7 @@ use crate::orientation::Orientation;
 use crate::text::{float, general, number, quoted, shown, tuple};
 use serde_json::{Map, Value};
 
+mod axes;
 mod check;
 mod fit;
 

@@ -1,7 +1,33 @@
 //! What every format's module gives: the positions and faces that it found, and how to write them back.
 
 use crate::error::Error;
-use crate::shape::{Fact, Written};
+use crate::precision::{self, Precision};
+
+/// Gives the bytes of a file beside the shape, by the relative path that the shape names (`"chair.bin"`).
+pub type SideFiles<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + 'a;
+
+/// One thing that a file holds, for a person to read: `("materials", "oak, steel")`.
+pub type Fact = (String, String);
+
+/// A file written anew.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// The file's bytes.
+    pub bytes: Vec<u8>,
+    /// Side files whose content changed too (the buffers of a `.gltf`).
+    pub side_files: Vec<SideFile>,
+}
+
+/// A side file written anew.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SideFile {
+    /// The relative path by which the written file names it.
+    pub name: String,
+    /// The relative path by which the original named it.
+    pub was: String,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+}
 
 /// The result of reading a file.
 pub(crate) struct Parsed {
@@ -35,9 +61,30 @@ pub(crate) trait Document: Send + Sync {
     /// Whether the file holds normals or tangents, so that the local maps matter.
     fn has_normals(&self) -> bool;
 
-    /// Files beside this one that it names: buffers, images, material libraries.
+    /// How the file holds the coordinates of an axis.
+    fn precision(&self, axis: usize) -> Precision;
+
+    /// Points (`dim` numbers each) as the file would hold them. As many as the shape has are its positions, moved; others are places
+    /// anywhere, as a vertex there would be held.
+    fn round(&self, before: &[f64], points: &[f64], dim: usize) -> Result<Vec<f64>, Error> {
+        precision::round(|axis| self.precision(axis), before, points, dim)
+    }
+
+    /// The largest distance between neighbouring numbers of the file's type at the shape's coordinates, whose largest along
+    /// each axis are `largest`; 0 where it holds doubles, or text.
+    fn step(&self, largest: &[f64]) -> Result<f64, Error> {
+        let steps = largest.iter().enumerate().map(|(axis, &at)| self.precision(axis).step(at));
+        Ok(steps.fold(0.0, f64::max))
+    }
+
+    /// Files beside this one that it names: buffers, images, material libraries. All readings, where a name may be read in several ways.
     fn named_files(&self) -> Vec<String> {
         Vec::new()
+    }
+
+    /// Those of the named files that are missing where only those that `is_there` says are there.
+    fn missing_files(&self, is_there: &dyn Fn(&str) -> bool) -> Vec<String> {
+        self.named_files().into_iter().filter(|name| !is_there(name)).collect()
     }
 
     /// The side files that [`Document::write`] may write for a shape that moves, as they are called after `stem`.

@@ -22,6 +22,8 @@ pub enum ErrorKind {
     SideFile,
     /// What the caller passed does not fit the shape (number of positions, size of the maps).
     Argument,
+    /// There is not enough memory for what the file holds.
+    Memory,
 }
 
 /// Why a shape could not be read or written: one sentence, without the file's name (which only the caller knows).
@@ -59,6 +61,11 @@ impl Error {
     /// A file beside this one could not be had.
     pub fn side_file(message: impl Into<String>) -> Self {
         Error { kind: ErrorKind::SideFile, place: None, message: message.into() }
+    }
+
+    /// There is not enough memory for what the file holds.
+    pub fn memory() -> Self {
+        Error { kind: ErrorKind::Memory, place: None, message: "there is not enough memory for this".into() }
     }
 
     /// The caller's arguments do not fit the shape.

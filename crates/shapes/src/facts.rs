@@ -2,7 +2,13 @@
 
 use std::collections::HashSet;
 
-use crate::shape::Fact;
+use crate::document::Fact;
+use crate::error::Error;
+use crate::text::printable;
+
+/// What happens to splats.
+pub(crate) const SPLATS_MOVE: &str =
+    "3D Gaussian splats, moved as points: shape, rotation and colour stay as they are";
 
 /// How many faces of which number of corners a file has.
 #[derive(Default)]
@@ -55,10 +61,12 @@ impl<'a> Names<'a> {
     /// As many characters of each.
     const LONGEST: usize = 40;
 
-    pub(crate) fn add(&mut self, name: &'a [u8]) {
+    pub(crate) fn add(&mut self, name: &'a [u8]) -> Result<(), Error> {
+        self.seen.try_reserve(1).map_err(|_| Error::memory())?;
         if self.seen.insert(name) && self.first.len() < Self::SHOWN {
             self.first.push(name);
         }
+        Ok(())
     }
 
     /// `("materials", "3: oak, steel, glass")`.
@@ -68,11 +76,12 @@ impl<'a> Names<'a> {
         }
         let shown = |name: &&[u8]| -> String {
             let text = String::from_utf8_lossy(name);
-            let mut text: String = text.chars().filter(|c| !c.is_control()).take(Self::LONGEST).collect();
+            let text: String = text.chars().take(Self::LONGEST).collect();
             if text.is_empty() {
-                text.push_str("(no name)");
+                "(no name)".into()
+            } else {
+                printable(text.as_bytes())
             }
-            text
         };
         let names: Vec<_> = self.first.iter().map(shown).collect();
         let more = if self.seen.len() > self.first.len() { ", ..." } else { "" };

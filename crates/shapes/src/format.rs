@@ -1,8 +1,11 @@
 //! Which format is a file? By its content first, by its ending where the content does not say.
 
 mod sniff;
+mod unread;
 
 use crate::error::Error;
+
+pub(crate) use unread::git_lfs_pointer;
 
 /// The formats that this crate reads and writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -19,7 +22,7 @@ pub enum Format {
     Gltf,
     /// glTF 2 as one binary file.
     Glb,
-    /// A table of numbers as text: XYZ, TXT, CSV.
+    /// A table of numbers as text: XYZ, TXT, CSV, ASC, PTS.
     Table,
     /// A NumPy array.
     Npy,
@@ -47,7 +50,7 @@ impl Format {
             Format::Stl => &["stl"],
             Format::Gltf => &["gltf"],
             Format::Glb => &["glb"],
-            Format::Table => &["xyz", "txt", "csv"],
+            Format::Table => &["xyz", "txt", "csv", "asc", "pts"],
             Format::Npy => &["npy"],
         }
     }

@@ -13,25 +13,33 @@
 //! | [`mod@format`] | which format are these bytes? |
 //! | `obj`, `ply`, `off`, `stl`, `gltf`, `table`, `npy` | one format each, all behind the trait `Document` |
 //! | `text`, `number` | lines and tokens with their places in the file; numbers read and printed |
+//! | `precision` | what of a coordinate arrives in a file |
+//! | `memory` | allocation that may fail |
 //! | `facts` | what several formats tell alike about their content |
 //! | `normals` | a normal turned by a local map's inverse transpose |
 
+#![forbid(unsafe_code)]
+
+mod bounds;
 mod document;
 mod error;
 mod facts;
 pub mod format;
 mod gltf;
+mod memory;
 mod normals;
 mod npy;
 mod number;
 mod obj;
 mod off;
 mod ply;
+mod precision;
 mod shape;
 mod stl;
 mod table;
 mod text;
 
+pub use document::{Fact, SideFile, SideFiles, Written};
 pub use error::{Error, ErrorKind, Place};
 pub use format::Format;
-pub use shape::{Fact, Shape, SideFile, SideFiles, Written};
+pub use shape::Shape;

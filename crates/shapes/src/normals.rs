@@ -1,5 +1,8 @@
 //! Normals turn with the surface: by the inverse transpose of the local map.
 
+use crate::error::Error;
+use crate::memory;
+
 /// The cofactor matrix of a row-major 3 x 3 matrix: `det(M) M^-T`, defined for singular maps too. A face's normal
 /// `a x b` becomes `(M a) x (M b) = cof(M) (a x b)`, so that normals stay on the side of the winding even under a reflection.
 pub(crate) fn cofactor(m: &[f64; 9]) -> [f64; 9] {
@@ -56,9 +59,9 @@ pub(crate) fn face_normal(positions: &[f64], face: [u32; 3]) -> [f64; 3] {
 
 /// The smallest rotation a position that takes the mean normal of the faces around it to what that became. What a caller
 /// who has no local maps gets.
-pub(crate) fn maps_from_faces(before: &[f64], after: &[f64], faces: &[[u32; 3]]) -> Vec<f64> {
-    let vertex_normals = |positions: &[f64]| {
-        let mut sums = vec![[0.0; 3]; positions.len() / 3];
+pub(crate) fn maps_from_faces(before: &[f64], after: &[f64], faces: &[[u32; 3]]) -> Result<Vec<f64>, Error> {
+    let vertex_normals = |positions: &[f64]| -> Result<_, Error> {
+        let mut sums = memory::filled([0.0; 3], positions.len() / 3)?;
         for &face in faces {
             let normal = face_normal(positions, face);
             for index in face {
@@ -67,13 +70,13 @@ pub(crate) fn maps_from_faces(before: &[f64], after: &[f64], faces: &[[u32; 3]])
                 }
             }
         }
-        sums
+        Ok(sums)
     };
-    vertex_normals(before)
-        .into_iter()
-        .zip(vertex_normals(after))
-        .flat_map(|(a, b)| rotation_between(a, b))
-        .collect()
+    let mut maps = memory::with_room(3 * before.len())?;
+    for (a, b) in vertex_normals(before)?.into_iter().zip(vertex_normals(after)?) {
+        maps.extend(rotation_between(a, b));
+    }
+    Ok(maps)
 }
 
 /// The smallest rotation that takes the direction of `a` to that of `b` (Rodrigues); the identity where one has no length.

@@ -1,8 +1,10 @@
-//! NPY, NumPy's file of one array: float32 or float64, either byte order, C or Fortran order, of the shape (n,) or (n, k).
+//! NPY, NumPy's file of one array: float32 or float64, either byte order, C or Fortran order, of the shape (n,), (n, k) or, as images of
+//! points and triangles are, (h, w, k): the points in their order.
 
-use crate::document::{Document, Moved, Parsed};
+use crate::document::{Document, Moved, Parsed, Written};
 use crate::error::Error;
-use crate::shape::Written;
+use crate::memory;
+use crate::precision::Precision;
 use crate::text;
 
 /// Where the coordinates are in the file.
@@ -11,6 +13,8 @@ struct Array {
     start: usize,
     double: bool,
     big_endian: bool,
+    /// The lengths of all axes but the last.
+    leading: Vec<usize>,
     rows: usize,
     columns: usize,
     fortran_order: bool,
@@ -25,17 +29,21 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
     if needed > left as u128 {
         return Err(Error::at_byte(
             start as u64,
-            format!("the array of {rows} x {columns} numbers takes {needed} bytes, but the file has only {left} left"),
+            format!(
+                "the array of {} numbers takes {needed} bytes, but the file has only {left} left",
+                array.shown()
+            ),
         ));
     }
     let dim = columns.min(3);
-    let mut positions = Vec::with_capacity(rows * dim);
+    let mut positions = memory::with_room(rows * dim)?;
     for row in 0..rows {
         for column in 0..dim {
             let at = array.place(row, column);
             let value = array.get(source, at);
             if !value.is_finite() {
-                let message = format!("row {row}, column {column}: expected a finite number, found {value}");
+                let place = array.name_of(row);
+                let message = format!("{place}, column {column}: expected a finite number, found {value}");
                 return Err(Error::at_byte(at as u64, message));
             }
             positions.push(value);
@@ -46,7 +54,7 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
     let mut say = |what: &str, value: String| facts.push((what.to_string(), value));
     let endian = if array.big_endian { "big endian" } else { "little endian" };
     let order = if array.fortran_order { "Fortran order" } else { "C order" };
-    say("array", format!("{rows} x {columns}, float{}, {endian}, {order}", 8 * size));
+    say("array", format!("{}, float{}, {endian}, {order}", array.shown(), 8 * size));
     if columns > 3 {
         say("columns behind the third", format!("{} (carried over)", columns - 3));
     }
@@ -208,20 +216,24 @@ impl Array {
                 )))
             }
         };
-        let (rows, columns) = match header.shape[..] {
-            [rows] => (rows, 1),
-            [rows, columns] if columns > 0 => (rows, columns),
-            _ => {
-                return Err(Error::malformed(format!(
-                    "expected an array of the shape (n,), (n, 1), (n, 2), (n, 3) or more columns, found {:?}",
-                    header.shape
-                )))
-            }
+        let (leading, columns) = match header.shape[..] {
+            [rows] => (vec![rows], 1),
+            [rows, columns] if columns > 0 => (vec![rows], columns),
+            [ref leading @ .., columns] if columns > 1 => (leading.to_vec(), columns),
+            _ => (Vec::new(), 0),
+        };
+        let rows = leading.iter().try_fold(1usize, |rows, &length| rows.checked_mul(length));
+        let Some(rows) = rows.filter(|_| columns > 0) else {
+            return Err(Error::malformed(format!(
+                "expected an array of the shape (n,), (n, 1), (n, 2), (n, 3), (h, w, 3) or more columns, found {:?}",
+                header.shape
+            )));
         };
         Ok(Array {
             start,
             double,
             big_endian: order == ">",
+            leading,
             rows,
             columns,
             fortran_order: header.fortran_order,
@@ -239,8 +251,41 @@ impl Array {
 
     /// Where in the file the number is.
     fn place(&self, row: usize, column: usize) -> usize {
-        let index = if self.fortran_order { column * self.rows + row } else { row * self.columns + column };
+        let index = if self.fortran_order {
+            let (mut index, mut stride) = (0, 1);
+            for (&length, at) in self.leading.iter().zip(self.indices(row)) {
+                index += at * stride;
+                stride *= length;
+            }
+            index + column * self.rows
+        } else {
+            row * self.columns + column
+        };
         self.start + index * self.size()
+    }
+
+    /// The indices of a row along the leading axes; rows are counted with the last of them fastest, as NumPy does.
+    fn indices(&self, row: usize) -> impl Iterator<Item = usize> + '_ {
+        let mut below = self.rows;
+        self.leading.iter().map(move |&length| {
+            below /= length;
+            row / below % length
+        })
+    }
+
+    /// `120 x 3`.
+    fn shown(&self) -> String {
+        let lengths = self.leading.iter().chain([&self.columns]);
+        lengths.map(usize::to_string).collect::<Vec<_>>().join(" x ")
+    }
+
+    /// A row for a person: `row 4`, or `row (4, 0)` where there are several leading axes.
+    fn name_of(&self, row: usize) -> String {
+        let indices: Vec<_> = self.indices(row).map(|index| index.to_string()).collect();
+        match &indices[..] {
+            [row] => format!("row {row}"),
+            several => format!("row ({})", several.join(", ")),
+        }
     }
 
     fn get(&self, source: &[u8], at: usize) -> f64 {
@@ -274,8 +319,16 @@ impl Document for Array {
         false
     }
 
+    fn precision(&self, _axis: usize) -> Precision {
+        if self.double {
+            Precision::Double
+        } else {
+            Precision::Single
+        }
+    }
+
     fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {
-        let mut bytes = source.to_vec();
+        let mut bytes = memory::copy(source)?;
         let dim = self.columns.min(3);
         for (index, (&before, &after)) in moved.before.iter().zip(moved.after).enumerate() {
             let (row, column) = (index / dim, index % dim);

@@ -2,11 +2,32 @@
 
 use std::io::Write;
 
+use crate::bounds::Bounds;
+use crate::text::quote;
+
 /// The number that a token stands for. `1e5`, `+.5`, `-3.` are numbers; `nan`, `inf` and anything else are `None`.
 pub(crate) fn parse(token: &[u8]) -> Option<f64> {
     let token =
         token.strip_prefix(b"+").filter(|t| !t.starts_with(b"-") && !t.starts_with(b"+")).unwrap_or(token);
     fast_float2::parse(token).ok().filter(|v: &f64| v.is_finite())
+}
+
+/// Whether a token is a number but for a comma in the place of its point.
+pub(crate) fn has_decimal_comma(token: &[u8]) -> bool {
+    let Some(at) = token.iter().position(|&byte| byte == b',') else { return false };
+    let digit = |at: usize| token.get(at).is_some_and(u8::is_ascii_digit);
+    let mut point = token.to_vec();
+    point[at] = b'.';
+    at > 0 && digit(at - 1) && digit(at + 1) && parse(&point).is_some()
+}
+
+/// What is wrong with a token that is no number: a decimal comma, or else what `otherwise` says.
+pub(crate) fn wrong(token: &[u8], otherwise: impl FnOnce() -> String) -> String {
+    if has_decimal_comma(token) {
+        format!("decimal commas are not read, expected a decimal point, found {}", quote(token))
+    } else {
+        otherwise()
+    }
 }
 
 /// How many digits a token has behind its decimal point (an exponent moves the point).
@@ -40,15 +61,9 @@ impl Style {
     /// As many decimals as the most precise token of the file had, and enough for a ten-millionth of the longest side of the
     /// positions' box (of the largest coordinate, where they are all in one place).
     pub(crate) fn new(decimals_in_file: usize, positions: &[f64], dim: usize) -> Style {
-        let mut longest = 0f64;
-        let mut largest = 0f64;
-        for k in 0..dim {
-            let axis = || positions.iter().skip(k).step_by(dim);
-            let (min, max) =
-                axis().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), &c| (lo.min(c), hi.max(c)));
-            longest = longest.max(max - min);
-            largest = largest.max(max.abs()).max(min.abs());
-        }
+        let bounds = Bounds::of(positions, dim);
+        let longest = bounds.longest();
+        let largest = bounds.largest().into_iter().fold(0.0, f64::max);
         let size = [longest, largest].into_iter().find(|&size| size > 0.0).unwrap_or(1.0);
         let for_size = (7.0 - size.log10()).ceil();
         let decimals = (decimals_in_file as f64).max(for_size);
@@ -76,6 +91,18 @@ impl Style {
             }
             Style::Shortest => after != before,
         }
+    }
+
+    /// The number that `value` is when it is printed and read again.
+    pub(crate) fn rounded(self, value: f64) -> f64 {
+        let Style::Fixed(decimals) = self else { return value };
+        if let Some(scaled) = scaled(value, decimals) {
+            // Both are exact, so that the quotient is the double that is nearest to the printed decimal.
+            return scaled / 10f64.powi(decimals as i32);
+        }
+        let mut printed = Vec::new();
+        self.print(value, &mut printed);
+        parse(&printed).unwrap_or(value)
     }
 
     /// Prints `value`, without trailing zeros and without `-0`.
@@ -108,20 +135,23 @@ impl Style {
     }
 }
 
-/// [`Style::print`] for what is left of most numbers when they are scaled to whole ones: several times as fast as `{:.n}`,
-/// which is what takes the time in writing a large file. False, and nothing printed, where that would not be exact enough:
-/// the product is off by half a unit in its last place, which decides where the number lies halfway between two decimals.
-fn print_scaled(value: f64, decimals: usize, out: &mut Vec<u8>) -> bool {
+/// A number scaled to a whole one and rounded. `None` where that would not be exact enough: the product is off by half a unit in its
+/// last place, which decides where the number lies halfway between two decimals.
+fn scaled(value: f64, decimals: usize) -> Option<f64> {
     const EXACT: f64 = (1u64 << 53) as f64;
     if decimals > 15 {
-        return false;
+        return None;
     }
     let product = value * 10f64.powi(decimals as i32);
     let scaled = product.round();
     let to_halfway = ((product - product.trunc()).abs() - 0.5).abs();
-    if scaled.is_nan() || to_halfway <= 2.0 * product.abs() / EXACT {
-        return false;
-    }
+    (!scaled.is_nan() && to_halfway > 2.0 * product.abs() / EXACT).then_some(scaled)
+}
+
+/// [`Style::print`] for what is left of most numbers when they are scaled to whole ones: several times as fast as `{:.n}`,
+/// which is what takes the time in writing a large file. False, and nothing printed, where that is not exact enough.
+fn print_scaled(value: f64, decimals: usize, out: &mut Vec<u8>) -> bool {
+    let Some(scaled) = scaled(value, decimals) else { return false };
     let (mut rest, mut decimals) = (scaled.abs() as u64, decimals);
     while decimals > 0 && rest % 10 == 0 {
         rest /= 10;
@@ -211,6 +241,13 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn rounding_is_printing_and_reading(value in -1e7f64..1e7, decimals in 0usize..17) {
+            for style in [Style::Fixed(decimals), Style::Shortest] {
+                prop_assert_eq!(style.rounded(value), parse(printed(style, value).as_bytes()).unwrap());
+            }
+        }
+
         #[test]
         fn the_fast_print_is_the_plain_one(value in -1e6f64..1e6, decimals in 0usize..9) {
             let mut fast = Vec::new();

@@ -1,16 +1,18 @@
 //! Geomview OFF: `[ST][C][N]OFF`, the counts, one line a vertex, one line a face.
 //!
 //! A vertex line holds the position, then (after what the header names) normal, colour and texture coordinates, in this
-//! order. A face line holds the number of corners, their indices from 0, and perhaps a colour. `#` starts a comment.
+//! order. A face line holds the number of corners, their indices from 0, and perhaps a colour. Both may go on in the lines below.
+//! `#` starts a comment.
 
 use std::ops::Range;
 
-use crate::document::{Document, Moved, Parsed};
+use crate::document::{Document, Moved, Parsed, Written};
 use crate::error::Error;
 use crate::facts;
+use crate::memory;
 use crate::normals;
 use crate::number::{self, Style};
-use crate::shape::Written;
+use crate::precision::Precision;
 use crate::text::{quote, tokens, Line, Lines, Patcher};
 
 /// What the header's prefixes announce for each vertex.
@@ -117,54 +119,117 @@ fn whole(token: &[u8]) -> Option<u64> {
     })
 }
 
-/// The first three numbers of a vertex line and their places in the line, skipping `skip` numbers before them.
-fn three(line: Line<'_>, skip: usize, what: &str) -> Result<[(Range<usize>, f64); 3], Error> {
-    let mut words = tokens(line.bytes, 0).skip(skip);
-    let mut next = || {
-        let range = words.next().ok_or_else(|| {
-            Error::at_line(
-                line.number,
-                format!("expected {what} of three numbers, found {}", quote(line.bytes)),
-            )
-        })?;
-        let word = &line.bytes[range.clone()];
-        match number::parse(word) {
-            Some(value) => Ok((range, value)),
-            None => Err(Error::at_line(
-                line.number,
-                format!("expected {what}, found {}, which is not a finite number", quote(word)),
-            )),
+/// The words of a vertex or a face. They may go on in the lines below; then the last of them must end a line, or a row that lacks a
+/// number would swallow the next.
+struct Row<'a, 'l, L> {
+    lines: &'l mut L,
+    first: Line<'a>,
+    line: Line<'a>,
+    /// What is read of `line`.
+    at: usize,
+}
+
+impl<'a, 'l, L: Iterator<Item = Line<'a>>> Row<'a, 'l, L> {
+    /// The row that starts with the next line; `None` at the end of the file.
+    fn next(lines: &'l mut L) -> Option<Self> {
+        let first = lines.next()?;
+        Some(Row { lines, first, line: first, at: 0 })
+    }
+
+    /// The next word, and its place in the file.
+    #[inline]
+    fn word(&mut self) -> Option<(&'a [u8], Range<usize>)> {
+        loop {
+            let (start, from) = (self.line.start, self.at);
+            if let Some(range) = tokens(&self.line.bytes[from..], start + from).next() {
+                self.at = range.end - start;
+                return Some((&self.line.bytes[range.start - start..self.at], range));
+            }
+            (self.line, self.at) = (self.lines.next()?, 0);
         }
+    }
+
+    /// Whether something stands behind the words that were read. Nothing may where the row went on in other lines.
+    fn has_more(&self, expected: &str) -> Result<bool, Error> {
+        let has_more = tokens(&self.line.bytes[self.at..], 0).next().is_some();
+        if has_more && self.goes_on() {
+            return Err(self.short(expected));
+        }
+        Ok(has_more)
+    }
+
+    fn goes_on(&self) -> bool {
+        self.line.number != self.first.number
+    }
+
+    /// The row has fewer words than it should.
+    fn short(&self, expected: &str) -> Error {
+        Error::at_line(self.first.number, format!("expected {expected} {}", quote(self.first.bytes)))
+    }
+}
+
+/// Three numbers and their places in the file.
+fn three<'a, L: Iterator<Item = Line<'a>>>(
+    row: &mut Row<'a, '_, L>,
+    what: &str,
+) -> Result<[(Range<usize>, f64); 3], Error> {
+    let mut next = || {
+        let (word, range) = row.word().ok_or_else(|| row.short(&of_three(what)))?;
+        let value = number::parse(word).ok_or_else(|| {
+            let otherwise =
+                || format!("expected {what}, found {}, which is not a finite number", quote(word));
+            Error::at_line(row.line.number, number::wrong(word, otherwise))
+        })?;
+        Ok((range, value))
     };
     Ok([next()?, next()?, next()?])
 }
 
+fn of_three(what: &str) -> String {
+    format!("{what} of three numbers, found")
+}
+
+/// The position of a vertex, and its normal where they have one.
+type Vertex = ([(Range<usize>, f64); 3], Option<[(Range<usize>, f64); 3]>);
+
+/// Reads the next vertex; `None` at the end of the file.
+fn read_vertex<'a>(
+    lines: &mut impl Iterator<Item = Line<'a>>,
+    normals: bool,
+) -> Result<Option<Vertex>, Error> {
+    let Some(mut row) = Row::next(lines) else { return Ok(None) };
+    let position = three(&mut row, POSITION)?;
+    let normal = normals.then(|| three(&mut row, NORMAL)).transpose()?;
+    row.has_more(&of_three(if normals { NORMAL } else { POSITION }))?;
+    Ok(Some((position, normal)))
+}
+
+const POSITION: &str = "a position";
+const NORMAL: &str = "a normal";
+
 pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
     let mut lines = Lines::new(source).filter_map(content);
     let counts = read_counts(source, &mut lines)?;
-    let mut positions = Vec::with_capacity(3 * counts.vertices);
+    let mut positions = memory::with_room(3 * counts.vertices)?;
     let mut decimals = 0;
     for index in 0..counts.vertices {
-        let line = lines.next().ok_or_else(|| {
+        let (position, _) = read_vertex(&mut lines, counts.header.normals)?.ok_or_else(|| {
             Error::malformed(format!("the file ends after {index} of {} vertices", counts.vertices))
         })?;
-        for (range, value) in three(line, 0, "a position")? {
-            decimals = decimals.max(number::decimals(&line.bytes[range]));
+        for (range, value) in position {
+            decimals = decimals.max(number::decimals(&source[range]));
             positions.push(value);
-        }
-        if counts.header.normals {
-            three(line, 3, "a normal")?;
         }
     }
     let mut triangles = Vec::new();
     let (mut sizes, mut coloured) = (facts::FaceSizes::default(), 0);
     for index in 0..counts.faces {
-        let line = lines.next().ok_or_else(|| {
+        let row = Row::next(&mut lines).ok_or_else(|| {
             Error::malformed(format!("the file ends after {index} of {} faces", counts.faces))
         })?;
-        let corners = read_face(line, counts.vertices, &mut triangles)?;
+        let (corners, is_coloured) = read_face(row, counts.vertices, &mut triangles)?;
         sizes.add(corners);
-        coloured += usize::from(tokens(line.bytes, 0).count() > corners + 1);
+        coloured += usize::from(is_coloured);
     }
     let mut facts = Vec::new();
     sizes.tell(&mut facts);
@@ -189,27 +254,29 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
     })
 }
 
-/// Adds a face's triangles and returns its number of corners.
-fn read_face(line: Line<'_>, vertices: usize, triangles: &mut Vec<[u32; 3]>) -> Result<usize, Error> {
-    let wrong = |found: String| {
-        Error::at_line(
-            line.number,
-            format!("expected a face as its number of corners and their indices, found {found}"),
-        )
+/// Adds a face's triangles and returns its number of corners, and whether it has a colour.
+fn read_face<'a>(
+    mut row: Row<'a, '_, impl Iterator<Item = Line<'a>>>,
+    vertices: usize,
+    triangles: &mut Vec<[u32; 3]>,
+) -> Result<(usize, bool), Error> {
+    const EXPECTED: &str = "a face as its number of corners and their indices, found";
+    let short = format!("{EXPECTED} the end of the line after");
+    let next = |row: &mut Row<'a, '_, _>| {
+        let (word, _) = row.word().ok_or_else(|| row.short(&short))?;
+        let wrong = || Error::at_line(row.line.number, format!("expected {EXPECTED} {}", quote(word)));
+        whole(word).ok_or_else(wrong)
     };
-    let mut words = tokens(line.bytes, 0).map(|range| &line.bytes[range]);
-    let mut next = || {
-        let word =
-            words.next().ok_or_else(|| wrong(format!("the end of the line after {}", quote(line.bytes))))?;
-        whole(word).ok_or_else(|| wrong(quote(word)))
-    };
-    let corners = next()?;
+    let corners = next(&mut row)?;
     let (mut first, mut previous) = (0, 0);
     for corner in 0..corners {
-        let index = next()?;
+        let index = next(&mut row)?;
+        if index >= vertices as u64 && row.goes_on() {
+            return Err(row.short(&short));
+        }
         if index >= vertices as u64 {
             return Err(Error::at_line(
-                line.number,
+                row.line.number,
                 format!("a face's corner is vertex {index}, but the file has {vertices} vertices (counted from 0)"),
             ));
         }
@@ -217,11 +284,11 @@ fn read_face(line: Line<'_>, vertices: usize, triangles: &mut Vec<[u32; 3]>) -> 
         match corner {
             0 => first = index,
             1 => {}
-            _ => triangles.push([first, previous, index]),
+            _ => memory::push(triangles, [first, previous, index])?,
         }
         previous = index;
     }
-    Ok(corners as usize)
+    Ok((corners as usize, row.has_more(&short)?))
 }
 
 /// How to write it: the vertex lines are found again.
@@ -235,34 +302,37 @@ impl Document for Off {
         self.has_normals
     }
 
+    fn precision(&self, _axis: usize) -> Precision {
+        Precision::Digits(self.decimals)
+    }
+
     fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {
         let style = Style::new(self.decimals, moved.after, 3);
         let maps = moved.maps.filter(|_| self.has_normals);
         let mut lines = Lines::new(source).filter_map(content);
         let counts = read_counts(source, &mut lines)?;
-        let mut patcher = Patcher::new(source);
-        for (index, line) in lines.take(counts.vertices).enumerate() {
-            let start = line.start;
+        let mut patcher = Patcher::new(source)?;
+        for index in 0..counts.vertices {
+            let Some((position, normal)) = read_vertex(&mut lines, counts.header.normals)? else { break };
             let mut put = |range: Range<usize>, was: f64, is: f64, style: Style| {
                 if style.differs(was, is) {
-                    style.print(is, patcher.replace(start + range.start..start + range.end));
+                    style.print(is, patcher.replace(range)?);
                 }
+                Ok(())
             };
             let at = 3 * index;
-            let position = three(line, 0, "a position")?;
             for (k, (range, _)) in position.into_iter().enumerate() {
-                put(range, moved.before[at + k], moved.after[at + k], style);
+                put(range, moved.before[at + k], moved.after[at + k], style)?;
             }
-            if let Some(maps) = maps {
-                let normal = three(line, 3, "a normal")?;
+            if let (Some(maps), Some(normal)) = (maps, normal) {
                 let was = [normal[0].1, normal[1].1, normal[2].1];
                 let is = normals::turn(normals::map_at(maps, index), was);
-                let style = Style::for_normal(normal.each_ref().map(|(range, _)| &line.bytes[range.clone()]));
+                let style = Style::for_normal(normal.each_ref().map(|(range, _)| &source[range.clone()]));
                 for ((range, was), is) in normal.into_iter().zip(is) {
-                    put(range, was, is, style);
+                    put(range, was, is, style)?;
                 }
             }
         }
-        Ok(Written { bytes: patcher.finish(), side_files: Vec::new() })
+        Ok(Written { bytes: patcher.finish()?, side_files: Vec::new() })
     }
 }

@@ -1,35 +1,10 @@
 //! A shape read from a file, and the way back.
 
-use crate::document::{Document, Moved, Parsed};
+use crate::bounds::Bounds;
+use crate::document::{Document, Fact, Moved, Parsed, SideFiles, Written};
 use crate::error::Error;
 use crate::format::Format;
-use crate::{gltf, normals, npy, obj, off, ply, stl, table};
-
-/// Gives the bytes of a file beside the shape, by the relative path that the shape names (`"chair.bin"`).
-pub type SideFiles<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + 'a;
-
-/// One thing that a file holds, for a person to read: `("materials", "oak, steel")`.
-pub type Fact = (String, String);
-
-/// A file written anew.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Written {
-    /// The file's bytes.
-    pub bytes: Vec<u8>,
-    /// Side files whose content changed too (the buffers of a `.gltf`).
-    pub side_files: Vec<SideFile>,
-}
-
-/// A side file written anew.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SideFile {
-    /// The relative path by which the written file names it.
-    pub name: String,
-    /// The relative path by which the original named it.
-    pub was: String,
-    /// Its bytes.
-    pub bytes: Vec<u8>,
-}
+use crate::{gltf, memory, normals, npy, obj, off, ply, stl, table};
 
 /// A shape read from a file: positions, a triangulated view of the faces, and everything else as it was.
 ///
@@ -52,6 +27,9 @@ pub struct Shape {
     faces: Option<Vec<[u32; 3]>>,
     facts: Vec<Fact>,
     document: Box<dyn Document>,
+    bounds: Bounds,
+    /// The ending of the file's own name, without the dot.
+    extension: Option<String>,
 }
 
 impl Shape {
@@ -65,7 +43,8 @@ impl Shape {
         side_files: &SideFiles<'_>,
     ) -> Result<Shape, Error> {
         let format = Format::sniff(&source, extension)?;
-        Shape::read(source, format, side_files)
+        let shape = Shape::read(source, format, side_files)?;
+        Ok(Shape { extension: extension.map(str::to_lowercase), ..shape })
     }
 
     /// Reads a file of the given format.
@@ -94,12 +73,20 @@ impl Shape {
             )));
         }
         debug_assert_eq!(positions.len() % dim, 0);
-        Ok(Shape { source, format, dim, positions, faces, facts, document })
+        let bounds = Bounds::of(&positions, dim);
+        Ok(Shape { source, format, dim, positions, faces, facts, document, bounds, extension: None })
     }
 
     /// The format that it was read as.
     pub fn format(&self) -> Format {
         self.format
+    }
+
+    /// The endings that the file may have when it is written, without the dot, in lower case: those of its format, and its own.
+    pub fn extensions(&self) -> Vec<&str> {
+        let known = self.format.extensions();
+        let own = self.extension.as_deref().filter(|own| !known.contains(own));
+        known.iter().copied().chain(own).collect()
     }
 
     /// Coordinates a position (3, or 1 or 2 for tables of numbers).
@@ -110,6 +97,46 @@ impl Shape {
     /// The positions, `dim` numbers each, in file order.
     pub fn positions(&self) -> &[f64] {
         &self.positions
+    }
+
+    /// The box of the positions: least and greatest corner.
+    pub fn bounds(&self) -> (&[f64], &[f64]) {
+        (&self.bounds.low, &self.bounds.high)
+    }
+
+    /// Points as the file holds them once it is written: 32-bit floats, digits, whole numbers. As many points as the shape has
+    /// positions are taken for these, and become exactly what reading the written file gives; others are places anywhere, as a vertex there would be.
+    ///
+    /// ```
+    /// use neuralmls_shapes::{Format, Shape};
+    /// let mut stl = vec![0u8; 134];
+    /// stl[80] = 1;
+    /// stl[96..100].copy_from_slice(&5e6f32.to_le_bytes());
+    /// let shape = Shape::read(stl, Format::Stl, &|_| Err("none".into())).unwrap();
+    /// assert_eq!(shape.round(&[5e6 + 0.05, 0.0, 0.0]).unwrap(), [5e6, 0.0, 0.0]);
+    /// assert_eq!(shape.step().unwrap(), 0.5);
+    /// ```
+    ///
+    /// # Errors
+    /// Where the number of coordinates does not fit, one is not finite, or the file cannot hold one.
+    pub fn round(&self, points: &[f64]) -> Result<Vec<f64>, Error> {
+        if !points.len().is_multiple_of(self.dim) {
+            let (dim, found) = (self.dim, points.len());
+            return Err(Error::argument(format!(
+                "expected points of {dim} coordinates, found {found} numbers"
+            )));
+        }
+        self.check_finite(points)?;
+        self.document.round(&self.positions, points, self.dim)
+    }
+
+    /// The largest distance between neighbouring numbers of the file's type at the shape's coordinates, in the shape's units;
+    /// 0 where the file holds doubles, or text, which is printed as precisely as the shape needs.
+    ///
+    /// # Errors
+    /// Where memory runs out.
+    pub fn step(&self) -> Result<f64, Error> {
+        self.document.step(&self.bounds.largest())
     }
 
     /// The faces as triangles, `None` where the file has none.
@@ -130,6 +157,11 @@ impl Shape {
     /// Files beside this one that it names, by their relative paths: buffers, images, material libraries.
     pub fn named_files(&self) -> Vec<String> {
         self.document.named_files()
+    }
+
+    /// Those of the named files that are missing, as the shape calls them, where only those that `is_there` says are there.
+    pub fn missing_files(&self, is_there: &dyn Fn(&str) -> bool) -> Vec<String> {
+        self.document.missing_files(is_there)
     }
 
     /// The side files that [`Shape::write_as`] may write for other positions, as it calls them after `stem`: those of a shape that
@@ -171,19 +203,24 @@ impl Shape {
         if maps.is_some_and(|maps| maps.len() != before.len() * dim) {
             return Err(Error::argument(format!("expected a {dim} x {dim} map for each position")));
         }
-        if let Some(at) = positions.iter().position(|c| !c.is_finite()) {
-            return Err(Error::argument(format!("position {} is not finite", at / dim)));
-        }
+        self.check_finite(positions)?;
         if positions == before {
-            return Ok(Written { bytes: self.source.clone(), side_files: Vec::new() });
+            return Ok(Written { bytes: memory::copy(&self.source)?, side_files: Vec::new() });
         }
         let estimated = match (maps, &self.faces) {
             (None, Some(faces)) if self.has_normals() && dim == 3 => {
-                Some(normals::maps_from_faces(before, positions, faces))
+                Some(normals::maps_from_faces(before, positions, faces)?)
             }
             _ => None,
         };
         let moved = Moved { before, after: positions, maps: maps.or(estimated.as_deref()), stem };
         self.document.write(&self.source, &moved)
+    }
+
+    fn check_finite(&self, points: &[f64]) -> Result<(), Error> {
+        match points.iter().position(|c| !c.is_finite()) {
+            Some(at) => Err(Error::argument(format!("position {} is not finite", at / self.dim))),
+            None => Ok(()),
+        }
     }
 }

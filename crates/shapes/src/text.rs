@@ -2,6 +2,12 @@
 
 use std::ops::Range;
 
+use crate::error::Error;
+use crate::memory;
+
+/// No number takes more bytes when it is printed.
+pub(crate) const LONGEST_NUMBER: usize = 400;
+
 /// A line of a text file.
 #[derive(Clone, Copy)]
 pub(crate) struct Line<'a> {
@@ -75,6 +81,19 @@ pub(crate) fn quote(token: &[u8]) -> String {
     }
 }
 
+/// A name or sentence of a file as text that does no harm on a terminal or a page: what is not printable (line ends, marks that turn
+/// the direction of writing) is spelled out.
+pub(crate) fn printable(text: &[u8]) -> String {
+    String::from_utf8_lossy(text).chars().map(printable_char).collect()
+}
+
+fn printable_char(c: char) -> String {
+    match c {
+        '\'' | '"' | '\\' => c.into(),
+        c => c.escape_debug().collect(),
+    }
+}
+
 /// Copies a file with some of its ranges replaced.
 pub(crate) struct Patcher<'a> {
     source: &'a [u8],
@@ -83,22 +102,25 @@ pub(crate) struct Patcher<'a> {
 }
 
 impl<'a> Patcher<'a> {
-    pub(crate) fn new(source: &'a [u8]) -> Self {
-        Patcher { source, copied: 0, out: Vec::with_capacity(source.len() + source.len() / 8) }
+    pub(crate) fn new(source: &'a [u8]) -> Result<Self, Error> {
+        let out = memory::with_room(source.len() + source.len() / 8)?;
+        Ok(Patcher { source, copied: 0, out })
     }
 
     /// Copies up to `range` and skips it: what the caller now writes to the result stands in its place. Ranges must come in
-    /// file order; an empty one is an insertion.
-    pub(crate) fn replace(&mut self, range: Range<usize>) -> &mut Vec<u8> {
-        self.out.extend_from_slice(&self.source[self.copied..range.start]);
+    /// file order; an empty one is an insertion. There is room for a number.
+    pub(crate) fn replace(&mut self, range: Range<usize>) -> Result<&mut Vec<u8>, Error> {
+        let between = &self.source[self.copied..range.start];
+        memory::reserve(&mut self.out, between.len() + LONGEST_NUMBER)?;
+        self.out.extend_from_slice(between);
         self.copied = range.end;
-        &mut self.out
+        Ok(&mut self.out)
     }
 
     /// The whole result.
-    pub(crate) fn finish(mut self) -> Vec<u8> {
-        self.out.extend_from_slice(&self.source[self.copied..]);
-        self.out
+    pub(crate) fn finish(mut self) -> Result<Vec<u8>, Error> {
+        memory::append(&mut self.out, &self.source[self.copied..])?;
+        Ok(self.out)
     }
 }
 
@@ -115,10 +137,15 @@ mod tests {
 
     #[test]
     fn a_patched_file_differs_in_the_patched_ranges_only() {
-        let mut patcher = Patcher::new(b"v 1 2 3");
-        patcher.replace(4..5).extend_from_slice(b"20");
-        patcher.replace(7..7).push(b'!');
-        assert_eq!(patcher.finish(), b"v 1 20 3!");
+        let mut patcher = Patcher::new(b"v 1 2 3").unwrap();
+        patcher.replace(4..5).unwrap().extend_from_slice(b"20");
+        patcher.replace(7..7).unwrap().push(b'!');
+        assert_eq!(patcher.finish().unwrap(), b"v 1 20 3!");
+    }
+
+    #[test]
+    fn what_turns_or_breaks_a_line_is_spelled_out() {
+        assert_eq!(printable("O'Neil \"\u{e9}\u{202e}\n".as_bytes()), "O'Neil \"\u{e9}\\u{202e}\\n");
     }
 
     #[test]

@@ -94,7 +94,7 @@ fn broken_files_are_refused_with_their_line() {
         ("\nv 0 nan 0\n", "line 2: expected a coordinate, found 'nan', which is not a finite number"),
         ("v 0 0 -inf\n", "line 1: expected a coordinate, found '-inf', which is not a finite number"),
         ("v 0 0 1e999\n", "line 1: expected a coordinate, found '1e999', which is not a finite number"),
-        ("v 0 0 1,5\n", "line 1: expected a coordinate, found '1,5', which is not a finite number"),
+        ("v 0 0 1,5\n", "line 1: decimal commas are not read, expected a decimal point, found '1,5'"),
         (&format!("{v}f 1 2 4\n"), "line 4: a face names vertex 4, but the file has 3"),
         (&format!("{v}f 0 1 2\n"), "line 4: a face names vertex 0, but they are counted from 1"),
         (&format!("{v}f 1 2 -4\n"), "line 4: a face names vertex -4, but 3 are defined up to here"),

@@ -97,6 +97,31 @@ fn broken_files_are_refused_with_their_line() {
     }
 }
 
+#[test]
+fn vertices_and_faces_may_go_on_in_the_lines_below() {
+    let text = "OFF\n4 2 0\n0 0\n0\n1 0 0\n1\n1\n0\n0 1 0 # last\n4 0\n1\n\n2 # c\n3\n3\n0 1 2\n";
+    let shape = off(text);
+    assert_eq!(shape.positions(), [0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.]);
+    assert_eq!(shape.faces().unwrap(), [[0, 1, 2], [0, 2, 3], [0, 1, 2]]);
+    assert_eq!(with(&shape, 7, 2.5), text.replacen("1\n1\n0", "1\n2.5\n0", 1));
+    let normals = off("NOFF\n1 0 0\n0 0 0\n0 0 1\n");
+    assert!(normals.has_normals());
+}
+
+#[test]
+fn a_row_that_lacks_a_number_does_not_swallow_the_next() {
+    for (text, sentence) in [
+        ("OFF\n2 0 0\n0 0\n1 2 3\n4 5 6\n", "line 3: expected a position of three numbers, found '0 0'"),
+        ("NOFF\n2 0 0\n0 0 0 0 1\n1 2 3 0 0 1\n", "line 3: expected a normal of three numbers, found '0 0 0 0 1'"),
+        (
+            "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2\n3 0 1 2\n",
+            "line 7: expected a face as its number of corners and their indices, found the end of the line after '4 0 1 2'",
+        ),
+    ] {
+        assert_eq!(refusal(text.as_bytes(), Format::Off), sentence);
+    }
+}
+
 proptest! {
     #[test]
     fn arbitrary_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..300)) {

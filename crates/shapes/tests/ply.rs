@@ -26,6 +26,36 @@ fn with(shape: &Shape, at: usize, value: f64) -> Vec<u8> {
     shape.write(&positions, None).unwrap().bytes
 }
 
+#[test]
+fn lines_of_the_header_that_no_keyword_starts_are_carried_over() {
+    let text = |line: &str| {
+        format!("ply\nformat ascii 1.0\n{line}\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n{line}\nend_header\n0 0 0\n")
+    };
+    for line in [
+        "Created by Blender3D 247 - www.blender.org, source file: ",
+        "vcg 1",
+        "  author",
+        "made 7 times over",
+    ] {
+        let shape = ply(text(line).as_bytes());
+        assert_eq!(fact(&shape, "comments"), "2");
+        assert_eq!(with(&shape, 0, 1.5), text(line).replace("0 0 0", "1.5 0 0").as_bytes());
+    }
+    // What may be a misspelt element or property says what follows.
+    for line in ["elemnt face 12", "propery float nx", "prop list uchar int vertex_indices"] {
+        assert!(
+            refused(text(line).as_bytes()).starts_with("line 3: expected format, comment, element,"),
+            "{line}"
+        );
+    }
+}
+
+#[test]
+fn the_texture_is_a_file_that_goes_along() {
+    assert_eq!(ply(ODD).named_files(), ["wood.png"]);
+    assert_eq!(ply(ODD).missing_files(&|_| false), ["wood.png"]);
+}
+
 const ODD: &[u8] = b"ply\r\n\
 format ascii 1.0\r\n\
 comment a square, and more than a square\r\n\
@@ -368,6 +398,7 @@ fn real_files_keep_everything() {
         "biker.compressed.ply",
         "issue623.ply",
         "float_inf_point_cloud.ply",
+        "organised.ply",
         "sized_dims.ply",
         "unsized_dims.ply",
         "no_vertex.ply",

@@ -1,13 +1,33 @@
-//! Every OBJ, OFF, XYZ, TXT and CSV file of the data folder: unmoved identical, bent with nothing else changed, or refused.
+//! Every OBJ, OFF, XYZ, TXT, CSV, ASC and PTS file of the data folder: unmoved identical, bent with nothing else changed, or refused.
 
 mod files;
 
 use files::{bent, data_files};
 use neuralmls_shapes::{Format, Shape};
 
+/// The words of a line, or the fields of a table's.
+fn words(format: Format, line: &str) -> Vec<&str> {
+    match format {
+        Format::Table => line.split([' ', '\t', ',', ';']).filter(|field| !field.is_empty()).collect(),
+        _ => line.split_whitespace().collect(),
+    }
+}
+
+/// The words of a line that hold the position.
+fn coordinates(shape: &Shape) -> Vec<usize> {
+    match shape.format() {
+        Format::Obj => vec![1, 2, 3],
+        Format::Table => {
+            let columns = shape.facts().iter().find(|(what, _)| what == "columns of the position").unwrap();
+            columns.1.split(", ").map(|column| column.parse::<usize>().unwrap() - 1).collect()
+        }
+        _ => vec![0, 1, 2],
+    }
+}
+
 /// Whether a line may change when positions and normals do.
 fn is_moving(format: Format, line: &str) -> bool {
-    let words: Vec<&str> = line.split_whitespace().collect();
+    let words = words(format, line);
     match format {
         Format::Obj => matches!(words.first(), Some(&"v" | &"vn")),
         // A vertex has no fewer than three numbers, and one of them almost always has a point or an exponent.
@@ -20,7 +40,8 @@ fn without_normal(word: &str) -> &str {
     word.match_indices('/').nth(1).map_or(word, |(at, _)| &word[..at])
 }
 
-fn check_only_moving_lines_changed(format: Format, name: &str, before: &[u8], after: &[u8]) {
+fn check_only_moving_lines_changed(shape: &Shape, name: &str, before: &[u8], after: &[u8]) {
+    let format = shape.format();
     let (before, after) = (String::from_utf8_lossy(before), String::from_utf8_lossy(after));
     let still = |text: &str| -> Vec<String> {
         let lines = text.split('\n').filter(|line| !is_moving(format, line));
@@ -39,10 +60,10 @@ fn check_only_moving_lines_changed(format: Format, name: &str, before: &[u8], af
         return;
     }
     for (a, b) in before.split('\n').zip(after.split('\n')) {
-        let (a, b): (Vec<_>, Vec<_>) = (a.split_whitespace().collect(), b.split_whitespace().collect());
+        let (a, b) = (words(format, a), words(format, b));
         assert_eq!(a.len(), b.len(), "{name}");
         // The keyword, and all that is behind the three coordinates.
-        let coordinates = if format == Format::Obj { 1..4 } else { 0..3 };
+        let coordinates = coordinates(shape);
         for at in (0..a.len()).filter(|at| !coordinates.contains(at)) {
             assert_eq!(a[at], b[at], "{name}");
         }
@@ -67,6 +88,10 @@ fn check(path: &std::path::Path) -> String {
     let again = Shape::open(written.clone(), extension.as_deref(), &none)
         .unwrap_or_else(|e| panic!("{name} bent: {e}"));
     assert_eq!(again.faces(), shape.faces(), "{name}");
+    assert!(
+        shape.round(&asked).unwrap() == again.positions(),
+        "{name}: what was written is not what is told"
+    );
     let size = |k: usize| {
         let axis = || asked.iter().skip(k).step_by(shape.dim());
         axis().fold(f64::MIN, |a, &b| a.max(b)) - axis().fold(f64::MAX, |a, &b| a.min(b))
@@ -77,7 +102,7 @@ fn check(path: &std::path::Path) -> String {
     for (is, asked) in again.positions().iter().zip(&asked) {
         assert!((is - asked).abs() <= 1e-7 * longest, "{name}: {is} {asked}");
     }
-    check_only_moving_lines_changed(shape.format(), &name, &bytes, &written);
+    check_only_moving_lines_changed(&shape, &name, &bytes, &written);
     let count = shape.positions().len() / shape.dim();
     let facts: Vec<_> = shape.facts().iter().map(|(what, value)| format!("{what}: {value}")).collect();
     format!("{count} vertices, {} triangles | {}", shape.faces().map_or(0, <[_]>::len), facts.join(" | "))

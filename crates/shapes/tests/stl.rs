@@ -165,6 +165,40 @@ fn refusals_name_the_place() {
 }
 
 #[test]
+fn a_byte_order_mark_and_white_space_before_solid_are_carried_over() {
+    for start in ["\u{feff}", " ", "\t", "\u{feff}\r\n "] {
+        let text = format!("{start}{TWO_SOLIDS}");
+        let shape = stl(text.as_bytes());
+        assert_eq!(shape.positions(), stl(TWO_SOLIDS.as_bytes()).positions());
+        let mut moved = shape.positions().to_vec();
+        moved[0] = 0.5;
+        let expected = text.replacen("vertex 0 0 0", "vertex 0.5 0 0", 1);
+        assert_eq!(shape.write(&moved, None).unwrap().bytes, expected.as_bytes());
+    }
+}
+
+#[test]
+fn a_number_of_triangles_that_was_never_filled_in_follows_from_the_length() {
+    let mut bytes = binary("", &[([0.; 3], CORNERS, 0), ([0.; 3], CORNERS, 7)]);
+    bytes[80..84].fill(0);
+    let shape = stl(&bytes);
+    assert_eq!((shape.positions().len(), shape.faces().unwrap().len()), (18, 2));
+    assert_eq!(fact(&shape, "number of triangles"), "0 in the header, 2 behind it (read; the header stays)");
+    let written = shape.write(&bent(&shape), None).unwrap().bytes;
+    assert_eq!((written.len(), &written[80..84]), (bytes.len(), &[0; 4][..]));
+    // Neither nothing behind it nor half of a triangle.
+    for length in [84, 100] {
+        assert!(refusal(&bytes[..length], Format::Stl).contains("no vertices"));
+    }
+}
+
+#[test]
+fn decimal_commas_are_named() {
+    let refused = refusal(TWO_SOLIDS.replacen("vertex 0 0 0", "vertex 0,5 0 0", 1).as_bytes(), Format::Stl);
+    assert_eq!(refused, "line 4: decimal commas are not read, expected a decimal point, found '0,5'");
+}
+
+#[test]
 fn a_position_beyond_float32_is_refused() {
     let shape = stl(&binary("", &[([0.; 3], CORNERS, 0)]));
     let mut positions = shape.positions().to_vec();

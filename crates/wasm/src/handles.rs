@@ -34,6 +34,11 @@ impl Handles {
         self.core.set_transform(self.session.settings.transform);
     }
 
+    /// How far each control point is from the nearest other one, squared: what an oriented one counts by.
+    pub fn squares(&self) -> Float64Array {
+        Float64Array::from(&self.core.squares()[..])
+    }
+
     /// Where to aim for the targets `q` (m x dim), oriented by `orientations` (m x dim x dim, NaN for those that are not; undefined: none is):
     /// m x dim numbers; then the map that fits all control points with equal weights, from `q` as they are aimed at: its rotation (9), its
     /// scale, its linear map (9), which the shader falls back on (dim x dim each).

@@ -35,9 +35,25 @@ impl ShapeFile {
         self.0.format().name().into()
     }
 
-    /// The endings of files of this format, without the dot.
+    /// The endings that the file may be written with, without the dot: those of its format and its own.
     pub fn extensions(&self) -> Vec<String> {
-        self.0.format().extensions().iter().map(|ending| ending.to_string()).collect()
+        self.0.extensions().into_iter().map(String::from).collect()
+    }
+
+    /// Points (n x dim) as the file holds them once it is written.
+    ///
+    /// # Errors
+    /// Where the number of coordinates does not fit, or the file cannot hold one.
+    pub fn round(&self, points: &[f64]) -> Result<Float64Array, JsError> {
+        self.0.round(points).map(|points| Float64Array::from(&points[..])).map_err(refused)
+    }
+
+    /// The largest distance between neighbouring numbers of the file's type at the shape's coordinates.
+    ///
+    /// # Errors
+    /// Where memory runs out.
+    pub fn step(&self) -> Result<f64, JsError> {
+        self.0.step().map_err(refused)
     }
 
     /// Coordinates a position.

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-import re
 import sys
+import unicodedata
 from collections.abc import Iterable, Sequence
 from typing import Any, TextIO
 
@@ -25,8 +25,19 @@ def line(text: str, file: TextIO | None = None) -> None:
 
 
 def visible(text: str) -> str:
-    """The text with its control characters spelled out: a name must neither break a line nor drive a terminal."""
-    return re.sub(r"[\x00-\x1f\x7f-\x9f]", lambda found: found[0].encode("unicode_escape").decode(), text)
+    """The text with what is not shown spelled out: a name must not break a line, drive a terminal or turn its writing round.
+
+    That is control characters, marks of direction and the like, ends of lines and paragraphs, halves of a character.
+    """
+    if text.isprintable():
+        return text
+    return "".join(map(_shown, text))
+
+
+def _shown(character: str) -> str:
+    if unicodedata.category(character) in {"Cc", "Cf", "Cs", "Zl", "Zp"}:
+        return character.encode("unicode_escape").decode()
+    return character
 
 
 def document(content: dict[str, Any], file: TextIO | None = None) -> None:

@@ -165,7 +165,7 @@ def _warnings(session: Session, file: Path | None, shapes: Sequence[Shape]) -> l
     """What a person should know of the control points before anything is fitted."""
     warnings = list(session.notes)
     for shape in shapes:
-        warnings += inputs.check_points(session, file, shape)
+        warnings += inputs.check_points(session.points, file, shape)
     still = session.points.targets.tolist() == session.points.sources.tolist() and not session.points.is_oriented
     if still:
         warnings.append("no control point is moved, so that the output is the input")
@@ -189,7 +189,7 @@ def _bent(shape: Shape, file: Path, map: Map, stages: Stages, *, check: bool, fo
         if file == outputs.STANDARD_OUTPUT:
             sys.stdout.buffer.write(shape.encode(positions, maps=maps)[0])
             sys.stdout.buffer.flush()
-            written, kept = [], []
+            written, kept = list[str](), list[str]()
         else:
             written, kept = outputs.write_shape(shape, file, positions, maps=maps, force=force)
     return summary.summary(shape, file, map, told, advice if check else None, written, kept)

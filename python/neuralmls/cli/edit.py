@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from neuralmls.cli import console, options
+from neuralmls.cli import console, inputs, options
 from neuralmls.errors import ArgumentError
 
 
@@ -24,18 +24,13 @@ def edit(*, shape: Path | None, points: Path | None, port: int | None, browser: 
     """
     import webbrowser
 
-    from neuralmls.control_points import ControlPoints
     from neuralmls.editor_server import EditorServer, Session
 
     session = None
     if shape is not None:
-        from neuralmls.cli import deformation
-        from neuralmls.shape import read
-
-        source = read(shape)
-        deformation.check_size(source)
+        source = inputs.read_shape(shape)
         if points is not None:
-            for sentence in deformation.check_points(ControlPoints.read(points), points, source):
+            for sentence in inputs.check_points(inputs.read_session(points).points, points, source):
                 console.warning(sentence)
         session = Session(shape, source.companions, points)
     elif points is not None:
@@ -43,7 +38,7 @@ def edit(*, shape: Path | None, points: Path | None, port: int | None, browser: 
 
     with EditorServer(session, port=port) as server:
         console.line(f"neuralmls: the editor is at {server.url} until Ctrl-C")
-        if browser and not webbrowser.open(server.url):
+        if browser and not webbrowser.open(server.url_once()):
             console.line("neuralmls: no browser could be opened here: open that address in one")
         try:
             server.serve_forever()

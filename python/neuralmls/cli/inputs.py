@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from neuralmls.errors import ArgumentError, ControlPointError, FileError
 
 if TYPE_CHECKING:
+    from neuralmls.control_points import ControlPoints
     from neuralmls.session import Session
     from neuralmls.shape import Shape
 
@@ -79,7 +80,7 @@ def read_session(points: Path, targets: Path | None = None, *, by_order: bool = 
     return Session.read(points, targets, by_order=by_order)
 
 
-def check_points(session: Session, file: Path | None, shape: Shape) -> list[str]:
+def check_points(points: ControlPoints, file: Path | None, shape: Shape) -> list[str]:
     """Warn of control points that do not fit the shape.
 
     Raises
@@ -88,7 +89,7 @@ def check_points(session: Session, file: Path | None, shape: Shape) -> list[str]
         They have another dimension than the shape, or are nowhere near anything; the message names both files.
     """
     try:
-        return session.points.check(shape.bounds)
+        return points.check(shape.bounds)
     except ControlPointError as error:
         raise ControlPointError(f"{'the map' if file is None else file}, for {shape.path}: {error}") from None
 

@@ -22,6 +22,7 @@ def inspect(*, shape: Path, json: bool) -> None:
     source = read(shape)
     longest_side(source)  # refuses what has no size that a number could hold
     low, high = source.bounds.tolist()
+    beside = source.look_beside()
     size = [b - a for a, b in zip(low, high, strict=True)]
     told: dict[str, Any] = {
         "file": str(shape),
@@ -34,6 +35,8 @@ def inspect(*, shape: Path, json: bool) -> None:
         "size": size,
         "holds": dict(source.facts),
         "turns_normals": source.has_normals,
+        "missing": beside.missing,
+        "leads_out": beside.refused,
     }
     if json:
         console.document(told)
@@ -43,7 +46,10 @@ def inspect(*, shape: Path, json: bool) -> None:
     if told["triangles"] and "faces" not in told["holds"]:
         rows.append(("faces", f"{told['triangles']} triangles"))
     rows += [("box", f"{_place(low)} to {_place(high)}"), ("size", " x ".join(f"{length:.6g}" for length in size))]
-    console.pairs([*rows, *source.facts], sys.stdout)
+    rows += source.facts
+    rows += [("files that are missing", ", ".join(beside.missing))] if beside.missing else []
+    rows += [("files left behind", f"{', '.join(beside.refused)} (out of its folder)")] if beside.refused else []
+    console.pairs(rows, sys.stdout)
     turned = "; its normals and tangents turn with the surface" if source.has_normals else ""
     print(f"A deformation moves the positions{turned}.\nEverything else is carried over as it is.")
 

@@ -12,38 +12,59 @@ import click
 
 from neuralmls.cli import console
 from neuralmls.errors import ArgumentError, NeuralMLSError
+from neuralmls.extras import RESEARCH
 
 BAD_DATA, WRONG_USE, INTERRUPTED = 1, 2, 130
 
-COMMANDS = (
-    "deform",
-    "fit",
-    "edit",
-    "inspect",
-    "points",
-    "render",
-    "compare",
-    "sample",
-    "demo",
-    "convert-kpd",
-    "benchmark",
-    "reproduce",
-    "study",
-)
+COMMANDS = ("deform", "fit", "edit", "inspect", "points", "render", "sample", "demo")
+RESEARCH_COMMANDS = ("compare", "benchmark", "reproduce", "study", "convert-kpd")
+PLUGINS = "neuralmls.commands"  # the entry points by which other packages name commands: `plugin.py`
 
 
 class Commands(click.Group):
-    """The commands: each in the module of its name, which is imported when it is asked for."""
+    """The commands: each in the module of its name, which is imported when it is asked for; and other packages'."""
 
     def list_commands(self, _: click.Context) -> list[str]:
         return list(COMMANDS)
 
     def get_command(self, _: click.Context, name: str) -> click.Command | None:
-        if name not in COMMANDS:
-            return None
-        module = name.replace("-", "_")
-        command: click.Command = getattr(import_module(f"neuralmls.cli.{module}"), module)
+        if name in COMMANDS:
+            command: click.Command = getattr(import_module(f"neuralmls.cli.{name}"), name)
+            return command
+        return _of_other_package(name)
+
+    def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+        """Add the names of other packages' commands, which are not imported for that."""
+        super().format_commands(context, formatter)
+        if found := _other_packages():
+            with formatter.section("Commands of other packages"):
+                formatter.write_dl([(package, ", ".join(names)) for package, names in found.items()])
+
+
+def _of_other_package(name: str) -> click.Command | None:
+    from importlib.metadata import entry_points
+
+    for entry in entry_points(group=PLUGINS, name=name):
+        try:
+            command: click.Command = entry.load()
+        except (ImportError, AttributeError) as error:
+            raise NeuralMLSError(f"the command '{name}' cannot be loaded from {entry.value}: {error}") from error
         return command
+    if name in RESEARCH_COMMANDS:
+        raise NeuralMLSError(f"the command '{name}' is in a package of its own, which is not installed: {RESEARCH}")
+    return None
+
+
+def _other_packages() -> dict[str, list[str]]:
+    """The packages that have commands for us, and the names of these."""
+    from importlib.metadata import entry_points
+
+    found: dict[str, list[str]] = {}
+    for entry in entry_points(group=PLUGINS):
+        if entry.name not in COMMANDS:
+            package = entry.dist.name if entry.dist is not None else entry.value
+            found.setdefault(package, []).append(entry.name)
+    return found
 
 
 def _version(context: click.Context, _: click.Parameter, asked: bool) -> None:

@@ -27,6 +27,11 @@ def output(help: str) -> Decorator[Any]:
     return click.option("--output", "-o", type=PATH, required=True, help=help)
 
 
+def points(help: str) -> Decorator[Any]:
+    """Return the option that names the file of control points, which the command cannot do without."""
+    return click.option("--points", type=PATH, required=True, help=help)
+
+
 def session(function: Function) -> Function:
     """Add the options that name the files of control points."""
     for option in (

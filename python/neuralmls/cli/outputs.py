@@ -42,7 +42,7 @@ def of_shapes(shapes: Sequence[Path], output: Path) -> list[Path]:
 
 
 def check_output(path: Path, *, force: bool, inputs: Iterable[Path] = ()) -> None:
-    """Refuse a path that is a folder, is in none or in one that is not writable, or has a file already.
+    """Refuse a path that is a folder, has a name that the disk does not take, is in no folder or in one that is not writable, or has a file already.
 
     Raises
     ------
@@ -53,6 +53,12 @@ def check_output(path: Path, *, force: bool, inputs: Iterable[Path] = ()) -> Non
     """
     if path == STANDARD_OUTPUT:
         return
+    try:
+        path.lstat()
+    except (FileNotFoundError, NotADirectoryError):  # said below
+        pass
+    except OSError as error:  # too long a name
+        raise FileError(f"{path}: cannot write here: {error.strerror or error}") from error
     for other in inputs:
         if same_file(path, other) and not force:
             raise ArgumentError(f"{path}: the output is the input itself; --force overwrites it")
@@ -75,9 +81,10 @@ def check_ending(path: Path, endings: Iterable[str], what: str) -> None:
     ArgumentError
         It has another ending.
     """
-    allowed = [f".{ending}" for ending in endings]
-    if path.suffix.lower() not in allowed:
-        raise ArgumentError(f"{path}: expected a name that ends in {' or '.join(allowed)}, for {what}")
+    allowed = list(endings)
+    if path.suffix[1:].lower() not in allowed:
+        shown = " or ".join(f".{ending}" for ending in allowed if ending)
+        raise ArgumentError(f"{path}: expected a name that ends in {shown}, for {what}")
 
 
 def make_folder(path: Path) -> None:
@@ -97,7 +104,7 @@ def make_folder(path: Path) -> None:
 def write_shape(
     shape: Shape, path: Path, positions: ArrayLike, *, maps: ArrayLike | None = None, force: bool
 ) -> tuple[list[str], list[str]]:
-    """Write a shape with other positions; return the files written, and warnings of files beside it that were kept."""
+    """Write a shape with other positions; return the files written, and warnings of files beside it that are kept or missing."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         written = shape.write(path, positions, maps=maps, overwrite=force)

@@ -45,7 +45,8 @@ def render(
     """Draw shapes side by side into a picture.
 
     All are seen by the same camera. The options of the weights are those of deform, and matter
-    for --heat only. Needs PyVista: pip install 'neuralmls[figures]'
+    for --heat only. Needs PyVista:
+    pip install 'neuralmls[figures]' (in a checkout: pip install '.[figures]')
     """
     if heat is not None and points is None:
         raise ArgumentError("--heat names a control point: give the control points with --points")
@@ -62,7 +63,7 @@ def render(
     for source in sources:
         inputs.longest_side(source)  # refuses what has no size that a number could hold
     if session is not None:
-        for sentence in inputs.check_points(session, points, sources[0]):
+        for sentence in inputs.check_points(session.points, points, sources[0]):
             console.warning(sentence)
     values: list[NDArray[np.float64] | None] = [None] * len(sources)
     if session is not None and heat is not None:

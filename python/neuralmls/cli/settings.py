@@ -14,7 +14,7 @@ TransformName: TypeAlias = Literal["rigid", "similarity", "affine"]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-class HandlesType(click.ParamType):
+class HandlesType(click.ParamType[str | float]):
     """How closely control points arrive: a word, or a number from 0 to 1."""
 
     name = "auto|exact|soft|0..1"

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from neuralmls.errors import NeuralMLSError
+from neuralmls.extras import extra
 from neuralmls.figures.camera import VIEW_ANGLE, Camera
 from neuralmls.figures.palette import Colour
 from neuralmls.figures.quiet import native_silence
@@ -38,7 +39,7 @@ def pyvista_or_refuse() -> Any:
     try:
         import pyvista
     except ImportError as error:
-        raise NeuralMLSError("figures need PyVista: pip install 'neuralmls[figures]'") from error
+        raise NeuralMLSError(f"figures need PyVista, which is not installed: {extra('figures')}") from error
     return pyvista
 
 

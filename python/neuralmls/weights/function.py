@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from neuralmls import _core
+from neuralmls import _core as core  # where a class has an attribute of that name
 from neuralmls.arrays import Progress, as_points
 from neuralmls.errors import ArgumentError, FileError
 from neuralmls.files import as_path, read_bytes, write_atomically
@@ -29,13 +30,13 @@ class HasLogits(Protocol):
 class Weights:
     """A weight function of m control points, given by its logits; made by `fit`, `load`, or the class of its kind."""
 
-    _core: _core.Weights
+    _core: core.Weights
     _kind = ""
 
     @classmethod
-    def _of(cls, core: _core.Weights) -> Self:
+    def _of(cls, made: core.Weights) -> Self:
         self = cls.__new__(cls)
-        self._core = core
+        self._core = made
         return self
 
     @property

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from neuralmls.arrays import as_triangles
 from neuralmls.errors import NeuralMLSError
+from neuralmls.extras import extra
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -101,7 +102,7 @@ def scipy(module: str) -> Any:
         return import_module(f"scipy.{module}")
     except ImportError as error:
         raise NeuralMLSError(
-            "shape-aware weights need SciPy, which is not installed: pip install 'neuralmls[shape-aware]'"
+            f"shape-aware weights need SciPy, which is not installed: {extra('shape-aware')}"
         ) from error
 
 

@@ -1,14 +1,20 @@
 //! Warnings of control points that a person may not have meant.
 
-use super::ControlPoints;
+use super::fit::{self, Rest};
+use super::{axes, ControlPoints};
 use crate::error::Error;
-use crate::text::{general, listed};
+use crate::text::{general, listed, number};
 
 /// How far outside of the shape's box (in longest sides of it) a control point is no longer taken for intended.
 const FAR_SOURCE: f64 = 1.0;
 const FAR_TARGET: f64 = 10.0;
 /// Units; beyond it, squares of lengths overflow.
 const LARGEST: f64 = 1e150;
+/// What a mirroring may leave of the targets, and what the best rotation must leave, to be taken for one.
+const SMALL_REST: f64 = 0.1;
+const LARGE_REST: f64 = 0.2;
+/// Thinner than this part of their extent, control points do not tell a turn about their line from rounding.
+const THIN: f64 = 1e-6;
 
 impl ControlPoints {
     /// Warns of control points that a person may not have meant, a sentence for each kind: far outside of the shape's box
@@ -51,7 +57,32 @@ impl ControlPoints {
                 ));
             }
         }
+        warnings.extend(axes::other_axes_or_unit(&self.sources(), low, high));
+        warnings.extend(self.mirrored());
+        warnings.extend(self.on_a_line());
         Ok(warnings)
+    }
+
+    /// Targets that are the mirror image of the sources.
+    fn mirrored(&self) -> Option<String> {
+        let Rest { rotated, mirrored } = fit::rest(&self.sources(), &self.targets(), self.dim())?;
+        (mirrored < SMALL_REST && rotated > LARGE_REST).then(|| {
+            let off = number((1000.0 * mirrored).round() / 10.0);
+            format!(
+                "the targets are the mirror image of the sources, to {off} % of their size: rigid and similarity transforms \
+                 fold the shape there, affine can mirror it"
+            )
+        })
+    }
+
+    /// Three or more control points in space that only move, on a line or nearly so.
+    fn on_a_line(&self) -> Option<String> {
+        let only_move = self.len() > 2 && self.iter().all(|point| point.orientation.is_none());
+        (self.dim() == 3 && only_move && fit::thickness(&self.sources()) < THIN).then(|| {
+            "the control points are on a line, or nearly so: how far the shape turns about it is not determined, but by one \
+             control point beside it, or one with a rotation"
+                .to_string()
+        })
     }
 }
 

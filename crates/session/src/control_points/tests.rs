@@ -89,3 +89,42 @@ fn control_points_far_outside_are_named() {
     let error = seat_and_back().check((&[0.0; 3], &[1.0; 3])).unwrap_err();
     assert_eq!(error.message, "the control points have 2 coordinates each, but the shape has 3");
 }
+
+fn moved(list: &[([f64; 3], [f64; 3])]) -> ControlPoints {
+    let point = |(i, (p, q)): (usize, &([f64; 3], [f64; 3]))| ControlPoint {
+        target: q.to_vec(),
+        ..point(&format!("p{i}"), p)
+    };
+    ControlPoints::new(3, list.iter().enumerate().map(point).collect()).unwrap()
+}
+
+const BAR: (&[f64], &[f64]) = (&[0.0, 0.0, 0.0], &[6.0, 1.0, 1.0]);
+
+#[test]
+fn mirrored_targets_are_told_from_rotated_ones() {
+    let places = [[0.0, 0.0, 0.0], [6.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [3.0, 0.5, 0.5]];
+    let mirrored = moved(&places.map(|[x, y, z]| ([x, y, z], [-x, y, z])));
+    let warnings = mirrored.check(BAR).unwrap();
+    assert!(
+        warnings[0].starts_with("the targets are the mirror image of the sources, to 0 % of their size: ")
+    );
+    let turned = moved(&places.map(|[x, y, z]| ([x, y, z], [-x, -y, z])));
+    assert_eq!(turned.check(BAR).unwrap(), [""; 0]);
+}
+
+#[test]
+fn control_points_on_a_line_are_told() {
+    let line = moved(&[0.0, 3.0, 6.0].map(|x| ([x, 0.5, 0.5], [x, 0.5, 0.5])));
+    assert!(line.check(BAR).unwrap()[0].starts_with("the control points are on a line"));
+    let held = line.oriented("p0", Orientation::of_scale(1.0).unwrap()).unwrap();
+    assert_eq!(held.check(BAR).unwrap(), [""; 0]);
+    let thin = moved(&[0.0, 3.0, 6.0].map(|x| ([x, 0.5 + x * x * 1e-6, 0.5], [x, 0.5, 0.5])));
+    assert_eq!(thin.check(BAR).unwrap(), [""; 0]);
+}
+
+#[test]
+fn flipped_sources_are_told() {
+    let flipped = moved(&[[0.0, 0.0], [-6.0, 0.0], [0.0, -1.0]].map(|[x, y]| ([x, y, 0.0], [x, y, 0.0])));
+    let warnings = flipped.check(BAR).unwrap();
+    assert!(warnings.iter().any(|warning| warning.contains("x and y negated, as between LPS and RAS")));
+}

@@ -1,13 +1,33 @@
 //! Files of every kind: bytes -> session, session -> text.
+//!
+//! | module | what |
+//! |---|---|
+//! | `json` | our own session files, version 2 and 1, and the editor's |
+//! | `table` | CSV and its kin: ours, BigWarp's, OpenSim Creator's, CloudCompare's, NumPy's |
+//! | `slicer` | 3D Slicer's `.mrk.json` and `.fcsv` |
+//! | `picked_points` | MeshLab's `.pp` |
+//! | `idav`, `land`, `tag`, `tps`, `morphologika` | morphometrics and neuroimaging |
+//! | `landmarks` | what they share: landmarks, some of them missing, become control points |
 
 use crate::error::Error;
-use crate::session::{Read, Session};
+use crate::session::Read;
 use crate::text::{number, shown};
 
 mod csv_text;
-mod json;
+mod idav;
+mod join;
+pub(crate) mod json;
+mod land;
+mod landmarks;
+mod morphologika;
+mod picked_points;
+mod slicer;
+mod table;
+mod tag;
+mod tps;
 
 pub(crate) use csv_text::csv_text;
+pub use join::join;
 pub(crate) use json::json_text;
 
 /// Reads a control-point file or a landmark file of another tool: by its content, and by the ending of its name where the
@@ -16,17 +36,44 @@ pub(crate) use json::json_text;
 /// # Errors
 /// A file, where it cannot be read; control points, where they cannot be used.
 pub fn read(bytes: &[u8], name: &str) -> Result<Read, Error> {
-    let _ = (bytes, name);
-    Err(Error::file("the file is empty"))
-}
-
-/// Joins two files: the control points of the one, with the positions of the other as their targets, by name or by order.
-///
-/// # Errors
-/// Control points, where they have nothing in common or other dimensions.
-pub fn join(source: Session, targets: Session, by_order: bool) -> Result<Read, Error> {
-    let _ = (targets, by_order);
-    Ok(Read { session: source, notes: Vec::new() })
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let at = error.valid_up_to();
+        Error::file(format!("byte {at}: expected UTF-8 text, found 0x{:02x}", bytes[at]))
+    })?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let start = text.trim_start();
+    if start.is_empty() {
+        return Err(Error::file("the file is empty"));
+    }
+    let first = start.lines().next().unwrap_or_default().trim_end();
+    let ends = |ending: &str| name.to_ascii_lowercase().ends_with(ending);
+    if first.starts_with("version https://git-lfs.github.com/spec/") {
+        return Err(Error::file("this is a Git LFS pointer, not the file itself: `git lfs pull` gets it"));
+    }
+    if morphologika::is(text) && !ends(".json") {
+        morphologika::read(text)
+    } else if start.starts_with(['{', '[']) || ends(".json") {
+        let document = json::parse(text)?;
+        if slicer::is_markups(&document.value) {
+            slicer::read_markups(document)
+        } else {
+            json::session_of(document)
+        }
+    } else if start.starts_with('<') {
+        picked_points::read(text)
+    } else if tag::is(first) {
+        tag::read(text)
+    } else if idav::is(first) {
+        idav::read(text)
+    } else if tps::is(first) {
+        tps::read(text)
+    } else if slicer::is_fiducials(text) || ends(".fcsv") {
+        slicer::read_fiducials(text)
+    } else if land::is(text) || ends(".land") {
+        land::read(text)
+    } else {
+        table::read(text)
+    }
 }
 
 /// Numbers as JSON has them, for a sentence.

@@ -1,42 +1,9 @@
 //! Telling a file's format by its first bytes.
 
-use super::Format;
+use super::{unread, Format};
 use crate::error::Error;
 use crate::number;
 use crate::text::{bom_length, quote, tokens, Lines};
-
-/// What files of formats that are not read begin with, and what to call them.
-const UNREAD_BEGINNINGS: [(&[u8], &str); 17] = [
-    (b"PK\x03\x04", "a zip archive (as 3MF and NPZ files are)"),
-    (b"\x1f\x8b", "compressed with gzip (as .gz and .spz files are)"),
-    (b"DRACO", "a Draco file"),
-    (b"OMT", "an OpenMesh OM file"),
-    (b"OMQ", "an OpenMesh OM file"),
-    (b"OMP", "an OpenMesh OM file"),
-    (b"OCTM", "an OpenCTM file"),
-    (b"LASF", "a LAS or LAZ point cloud"),
-    (b"ASTM-E57", "an E57 point cloud"),
-    (b"# .PCD", "a PCD point cloud"),
-    (b"Kaydara FBX Binary", "an FBX file"),
-    (b"; FBX", "an FBX file"),
-    (b"# vtk DataFile", "a VTK file"),
-    (b"$MeshFormat", "a Gmsh file"),
-    (b"BLENDER", "a Blender file"),
-    (b"ISO-10303-21", "a STEP file"),
-    (b"#VRML", "a VRML file"),
-];
-
-/// The same by their endings, for those whose content does not tell.
-const UNREAD_ENDINGS: [(&str, &str); 8] = [
-    ("spz", "an .spz file of Gaussian splats (their PLY files are read)"),
-    ("splat", "a .splat file of Gaussian splats (their PLY files are read)"),
-    ("ksplat", "a .ksplat file of Gaussian splats (their PLY files are read)"),
-    ("pcd", "a PCD point cloud"),
-    ("drc", "a Draco file"),
-    ("om", "an OpenMesh OM file"),
-    ("mtl", "a material library of an OBJ file, not a shape"),
-    ("npz", "an NPZ archive"),
-];
 
 /// Statements that a Wavefront OBJ file may begin with.
 const OBJ_STATEMENTS: [&[u8]; 14] =
@@ -50,11 +17,15 @@ pub(super) fn sniff(bytes: &[u8], extension: Option<&str>) -> Result<Format, Err
     let extension = extension.map(|e| e.trim_start_matches('.').to_ascii_lowercase());
     let extension = extension.as_deref().filter(|e| !e.is_empty());
     let named = extension.and_then(Format::from_extension);
-    refuse_unread(bytes)?;
+    if let Some(what) = unread::by_content(bytes) {
+        return Err(Error::unsupported(what));
+    }
     let found = by_content(bytes, named);
     match (found, named) {
         // Numbers alone may be the content of a format that is not read.
-        (Some(Format::Table), None) if unread_ending(extension).is_some() => Err(unknown(bytes, extension)),
+        (Some(Format::Table), None) if unread::by_ending(extension).is_some() => {
+            Err(unknown(bytes, extension))
+        }
         (Some(found), Some(named)) if found != named => Err(Error::malformed(format!(
             "this is {}, not {}: rename it to .{}",
             with_article(found),
@@ -80,14 +51,10 @@ fn with_article(format: Format) -> &'static str {
     }
 }
 
-fn unread_ending(extension: Option<&str>) -> Option<&'static str> {
-    UNREAD_ENDINGS.iter().find(|(ending, _)| extension == Some(ending)).map(|(_, what)| *what)
-}
-
 /// The sentence for a file that is nothing that we know.
 fn unknown(bytes: &[u8], extension: Option<&str>) -> Error {
-    if let Some(what) = unread_ending(extension) {
-        return Error::unsupported(format!("this is {what}, which is not read"));
+    if let Some(what) = unread::by_ending(extension) {
+        return Error::unsupported(what);
     }
     let known = Format::ALL.map(Format::name).join(", ");
     Error::unsupported(match extension {
@@ -102,36 +69,6 @@ fn unknown(bytes: &[u8], extension: Option<&str>) -> Error {
             quote(&bytes[..bytes.len().min(8)])
         ),
     })
-}
-
-/// Refuses what is surely of a format that we do not read.
-fn refuse_unread(bytes: &[u8]) -> Result<(), Error> {
-    let refused = |what: &str| Err(Error::unsupported(format!("this is {what}, which is not read")));
-    if let Some((_, what)) = UNREAD_BEGINNINGS.iter().find(|(start, _)| bytes.starts_with(start)) {
-        return refused(what);
-    }
-    if is_utf16(bytes) {
-        return Err(Error::unsupported("this is UTF-16 text, which is not read: save it as UTF-8"));
-    }
-    let text = bytes[bom_length(bytes)..].trim_ascii_start();
-    if text.starts_with(b"<")
-        && text.get(1).is_some_and(|&b| b.is_ascii_alphabetic() || b == b'?' || b == b'!')
-    {
-        return refused("an XML or HTML file");
-    }
-    Ok(())
-}
-
-/// A byte order mark of UTF-16, or text with a zero at every second byte.
-fn is_utf16(bytes: &[u8]) -> bool {
-    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        return true;
-    }
-    let start = &bytes[..bytes.len().min(32)];
-    let half_is_text = |zeros: usize| {
-        start.iter().enumerate().all(|(i, &b)| if i % 2 == zeros { b == 0 } else { b.is_ascii() && b != 0 })
-    };
-    start.len() >= 8 && (half_is_text(0) || half_is_text(1))
 }
 
 /// The format that the content is surely of.
@@ -169,7 +106,7 @@ fn is_binary_stl(bytes: &[u8]) -> bool {
 }
 
 fn is_ascii_stl(bytes: &[u8]) -> bool {
-    let start = bytes[..bytes.len().min(2048)].trim_ascii_start().to_ascii_lowercase();
+    let start = bytes[bom_length(bytes)..bytes.len().min(2048)].trim_ascii_start().to_ascii_lowercase();
     let keyword_ends = start.get(5).is_none_or(u8::is_ascii_whitespace);
     start.starts_with(b"solid")
         && keyword_ends

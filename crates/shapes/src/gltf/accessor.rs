@@ -3,6 +3,8 @@
 use super::buffers::Buffers;
 use super::json::At;
 use crate::error::Error;
+use crate::memory;
+use crate::precision::{self, Precision};
 
 /// The type of one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -273,11 +275,14 @@ impl Accessor {
     pub fn packed(&self, index: usize, views: &[View], buffers: &Buffers) -> Result<Vec<u8>, Error> {
         let size = self.size;
         let bytes = |reach: &Reach| &buffers.storages[reach.storage].bytes[reach.start..reach.end()];
-        let mut packed = match self.reach(views, buffers) {
-            None => vec![0; size * self.count],
-            Some(reach) if reach.stride == size => bytes(&reach).to_vec(),
-            Some(reach) => bytes(&reach).chunks(reach.stride).flat_map(|c| &c[..size]).copied().collect(),
-        };
+        let mut packed = memory::with_room(size * self.count)?;
+        match self.reach(views, buffers) {
+            None => packed.resize(size * self.count, 0),
+            Some(reach) if reach.stride == size => packed.extend_from_slice(bytes(&reach)),
+            Some(reach) => {
+                bytes(&reach).chunks(reach.stride).for_each(|c| packed.extend_from_slice(&c[..size]));
+            }
+        }
         if let (Some(sparse), [indices, values]) = (&self.sparse, &self.sparse_reach(views, buffers)[..]) {
             let places = bytes(indices).chunks_exact(sparse.component.size());
             for (place, value) in places.zip(bytes(values).chunks_exact(size)) {
@@ -309,6 +314,24 @@ impl Accessor {
             Component::F32 => value,
             _ if self.normalized => value * self.component.range().1,
             _ => value,
+        }
+    }
+
+    /// A value as it is once it is stored: rounded, and clamped to what the type holds.
+    pub fn rounded(&self, value: f64) -> f64 {
+        let (least, most) = self.component.range();
+        match self.component {
+            Component::F32 => precision::single(value),
+            _ => self.meaning(self.stored(value).round().clamp(least, most)),
+        }
+    }
+
+    /// The distance from a value to the next that can be stored.
+    pub fn step(&self, value: f64) -> f64 {
+        match self.component {
+            Component::F32 => Precision::Single.step(value),
+            _ if self.normalized => 1.0 / self.component.range().1,
+            _ => 1.0,
         }
     }
 

@@ -5,8 +5,10 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use base64::Engine;
 
 use super::json::At;
+use crate::document::SideFiles;
 use crate::error::Error;
-use crate::shape::SideFiles;
+use crate::format;
+use crate::memory;
 
 /// Base64 as exporters write it: with padding or without.
 pub(super) const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -55,7 +57,7 @@ impl Buffers {
                     let Some(bin) = bin.filter(|_| i == 0) else {
                         return Err(at.error("\"uri\" is missing, and no BIN chunk holds the bytes"));
                     };
-                    all.storages.push(Storage { origin: Origin::Bin, bytes: bin.to_vec() });
+                    all.storages.push(Storage { origin: Origin::Bin, bytes: memory::copy(bin)? });
                     all.storages.len() - 1
                 }
             };
@@ -73,6 +75,7 @@ impl Buffers {
         let new = if text.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
             let (head, data) =
                 text.split_once(',').ok_or_else(|| uri.error("a data: URI without a comma"))?;
+            memory::expect(data.len())?;
             if head.to_ascii_lowercase().ends_with(";base64") {
                 let bytes = BASE64.decode(data).map_err(|e| uri.error(format!("not base64: {e}")))?;
                 Storage { origin: Origin::Embedded(format!("{head},")), bytes }
@@ -89,6 +92,9 @@ impl Buffers {
             let Origin::File(path) = &origin else { unreachable!() };
             let bytes =
                 side_files(path).map_err(|why| Error::side_file(format!("{}: {path:?}: {why}", uri.path)))?;
+            if let Some(pointer) = format::git_lfs_pointer(&bytes) {
+                return Err(Error::side_file(format!("{}: {path:?}: {pointer}", uri.path)));
+            }
             Storage { origin, bytes }
         };
         self.storages.push(new);

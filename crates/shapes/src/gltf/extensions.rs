@@ -11,8 +11,15 @@ const REFUSED: [&str; 4] = [
     "EXT_mesh_gpu_instancing",
 ];
 
+/// Splats as points with further attributes, which are carried over.
+pub(super) const SPLATS: &str = "KHR_gaussian_splatting";
+
+/// Extensions of that one which pack the splats: all whose names start so.
+const PACKED_SPLATS: &str = "KHR_gaussian_splatting_compression";
+
 /// Extensions that do not touch geometry: these, and all whose names start so.
-const HARMLESS: [&str; 17] = [
+const HARMLESS: [&str; 18] = [
+    SPLATS,
     "KHR_materials_",
     "KHR_texture_",
     "KHR_lights_",
@@ -51,13 +58,17 @@ pub(super) fn check(root: &At<'_>) -> Result<(), Error> {
     for place in places {
         if let Some(extensions) = place.get("extensions")? {
             extensions.object()?.keys().try_for_each(|name| refuse_geometry(name))?;
+            let Some(splats) = extensions.get(SPLATS)? else { continue };
+            if let Some(extensions) = splats.get("extensions")? {
+                extensions.object()?.keys().try_for_each(|name| refuse_geometry(name))?;
+            }
         }
     }
     Ok(())
 }
 
 fn refuse_geometry(name: &str) -> Result<(), Error> {
-    if REFUSED.contains(&name) {
+    if REFUSED.contains(&name) || name.starts_with(PACKED_SPLATS) {
         return Err(Error::unsupported(format!(
             "the file uses the extension {name}, which is not read; export it without"
         )));

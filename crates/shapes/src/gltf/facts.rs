@@ -1,16 +1,19 @@
 //! What else is in the file, for a person to read.
 
 use super::accessor::Component;
+use super::extensions::SPLATS;
 use super::json::At;
 use super::Model;
+use crate::document::Fact;
 use crate::error::Error;
-use crate::shape::Fact;
+use crate::facts::SPLATS_MOVE;
+use crate::text::printable;
 
 pub(super) fn facts(root: &At<'_>, model: &Model) -> Result<Vec<Fact>, Error> {
     let mut facts: Vec<Fact> = Vec::new();
     let mut tell = |name: &str, what: String| {
         if !what.is_empty() {
-            facts.push((name.to_string(), what));
+            facts.push((name.to_string(), printable(what.as_bytes())));
         }
     };
     let count = |n: usize| if n == 0 { String::new() } else { n.to_string() };
@@ -28,7 +31,7 @@ pub(super) fn facts(root: &At<'_>, model: &Model) -> Result<Vec<Fact>, Error> {
     tell("images", names(root, "images")?);
     tell("skins (deformed at rest)", count(model.skins.len()));
 
-    let (mut targets, mut sets, mut colours) = (0, 0, 0);
+    let (mut targets, mut sets, mut colours, mut splats) = (0, 0, 0, false);
     for mesh in root.items("meshes")? {
         for primitive in mesh.items("primitives")? {
             let has = |name: &str| Ok(primitive.need("attributes")?.get(name)?.is_some());
@@ -39,6 +42,9 @@ pub(super) fn facts(root: &At<'_>, model: &Model) -> Result<Vec<Fact>, Error> {
                 }
                 Ok(n)
             };
+            if let Some(extensions) = primitive.get("extensions")? {
+                splats |= extensions.get(SPLATS)?.is_some();
+            }
             targets = targets.max(primitive.items("targets")?.len());
             sets = sets.max(run("TEXCOORD")?);
             colours = colours.max(run("COLOR")?);
@@ -48,6 +54,7 @@ pub(super) fn facts(root: &At<'_>, model: &Model) -> Result<Vec<Fact>, Error> {
     tell("animations (kept)", names(root, "animations")?);
     tell("UV sets", count(sets));
     tell("vertex colours", count(colours));
+    tell("splats", if splats { SPLATS_MOVE.into() } else { String::new() });
     let quantised = model.blocks.iter().any(|b| model.accessors[b.accessor].component != Component::F32);
     tell("positions", if quantised { "quantised".into() } else { String::new() });
     let used = root.items("extensionsUsed")?;

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::error::Error;
+use crate::memory;
 
 const JSON: u32 = 0x4E4F_534A;
 const BIN: u32 = 0x004E_4942;
@@ -82,7 +83,9 @@ pub(super) fn join(
     json: Option<&[u8]>,
     bin: Option<&[u8]>,
 ) -> Result<Vec<u8>, Error> {
-    let mut out = source[..12].to_vec();
+    let new = [json, bin].into_iter().flatten().map(|bytes| bytes.len() + 8).sum::<usize>();
+    let mut out = memory::with_room(source.len() + new)?;
+    out.extend_from_slice(&source[..12]);
     for chunk in &glb.chunks {
         let data = chunk.start + 8..chunk.end;
         let (kind, new, filler) = if data == glb.json {

@@ -7,6 +7,7 @@ use super::affine::Affine;
 use super::json::At;
 use super::Model;
 use crate::error::Error;
+use crate::memory;
 
 /// One draw call of a mesh.
 pub(super) struct Primitive {
@@ -209,7 +210,7 @@ impl Model {
     /// All positions in the world, block after block.
     pub fn positions(&self) -> Result<Vec<f64>, Error> {
         let total = self.blocks.last().map_or(0, |b| b.first + self.accessors[b.accessor].count);
-        let mut positions = Vec::with_capacity(3 * total);
+        let mut positions = memory::with_room(3 * total)?;
         for block in &self.blocks {
             let (accessor, placement) = (&self.accessors[block.accessor], self.placement(block)?);
             let packed = self.packed(block.accessor)?;
@@ -244,6 +245,7 @@ impl Model {
                     ));
                 }
                 let first = block.first as u32;
+                memory::reserve(&mut faces, triangles)?;
                 faces.extend((0..triangles).map(|t| {
                     let [a, b, c] = match primitive.mode {
                         4 => [3 * t, 3 * t + 1, 3 * t + 2],
@@ -259,7 +261,11 @@ impl Model {
 
     /// The vertices of a primitive in drawing order.
     fn corners(&self, primitive: &Primitive, vertices: usize) -> Result<Vec<u32>, Error> {
-        let Some(index) = primitive.indices else { return Ok((0..vertices as u32).collect()) };
+        let Some(index) = primitive.indices else {
+            let mut all = memory::with_room(vertices)?;
+            all.extend(0..vertices as u32);
+            return Ok(all);
+        };
         let accessor = &self.accessors[index];
         let whole = matches!(accessor.component, Component::U8 | Component::U16 | Component::U32);
         let wrong =
@@ -275,6 +281,10 @@ impl Model {
             }
             Err(wrong(format!("has the index {corner} (number {i}), there are {vertices} positions")))
         };
-        packed.chunks_exact(accessor.size).enumerate().map(corner).collect()
+        let mut corners = memory::with_room(accessor.count)?;
+        for element in packed.chunks_exact(accessor.size).enumerate() {
+            corners.push(corner(element)?);
+        }
+        Ok(corners)
     }
 }

@@ -13,6 +13,7 @@
 //! | `scene`, `affine` | nodes, skins and their maps into the world |
 //! | `mesh` | primitives and instances: positions and faces |
 //! | `turned` | new positions, normals and tangents in a node's own space |
+//! | `rounded` | what of a position arrives there |
 //! | `write`, `output`, `splice` | which accessor gets what; the changed buffers; the changed text |
 
 mod accessor;
@@ -24,6 +25,7 @@ mod glb;
 mod json;
 mod mesh;
 mod output;
+mod rounded;
 mod scene;
 mod splice;
 mod turned;
@@ -36,9 +38,10 @@ use self::buffers::{percent_decoded, Buffers, Origin};
 use self::json::At;
 use self::mesh::{Block, Instance, Primitive};
 use self::scene::{Node, Skin};
-use crate::document::{Document, Moved, Parsed};
+use crate::document::{Document, Moved, Parsed, SideFiles, Written};
 use crate::error::Error;
-use crate::shape::{SideFiles, Written};
+use crate::memory;
+use crate::precision::Precision;
 
 /// What of a glTF file says where its vertices are.
 struct Model {
@@ -75,6 +78,8 @@ fn without_mark(text: &[u8]) -> &[u8] {
 }
 
 fn read(source: &[u8], text: &[u8], bin: Option<&[u8]>, side_files: &SideFiles<'_>) -> Result<Parsed, Error> {
+    // The values of a document take more memory than its text, and their reader does not say so if there is too little.
+    memory::expect(text.len().saturating_mul(2))?;
     let json: Value = serde_json::from_slice(text).map_err(|e| {
         let message = format!("not JSON: {e}");
         match bin {
@@ -156,6 +161,22 @@ impl Gltf {
 }
 
 impl Document for Gltf {
+    fn precision(&self, _axis: usize) -> Precision {
+        Precision::Single
+    }
+
+    fn round(&self, before: &[f64], points: &[f64], _dim: usize) -> Result<Vec<f64>, Error> {
+        if points.len() == before.len() {
+            self.model.positions_written(before, points)
+        } else {
+            self.model.places_written(before, points)
+        }
+    }
+
+    fn step(&self, _largest: &[f64]) -> Result<f64, Error> {
+        self.model.step()
+    }
+
     fn has_normals(&self) -> bool {
         self.shown().any(|p| p.normal.is_some() || p.tangent.is_some())
     }

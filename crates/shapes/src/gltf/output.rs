@@ -10,8 +10,9 @@ use super::buffers::{percent_encoded, Origin, BASE64};
 use super::splice::splice;
 use super::turned::Content;
 use super::{glb, without_mark, Gltf};
+use crate::document::{SideFile, Written};
 use crate::error::Error;
-use crate::shape::{SideFile, Written};
+use crate::memory;
 
 pub(super) struct Output<'a> {
     gltf: &'a Gltf,
@@ -48,33 +49,34 @@ impl<'a> Output<'a> {
     }
 
     /// Writes the elements of an accessor where they are. One without a view gets one.
-    pub fn overwrite(&mut self, accessor: usize, content: &Content) {
+    pub fn overwrite(&mut self, accessor: usize, content: &Content) -> Result<(), Error> {
         let model = &self.gltf.model;
         let old = &model.accessors[accessor];
         let Some(reach) = old.reach(&model.views, &model.buffers) else {
             return self.append(accessor, accessor, content);
         };
-        let bytes = &mut self.storages[reach.storage].to_mut()[reach.start..reach.end()];
+        let bytes = &mut owned(&mut self.storages[reach.storage])?[reach.start..reach.end()];
         for (element, new) in bytes.chunks_mut(reach.stride).zip(content.bytes.chunks_exact(old.size)) {
             element[..old.size].copy_from_slice(new);
         }
         self.set_bounds(accessor, old.width, content);
+        Ok(())
     }
 
     /// Writes elements to the end of the buffer of the accessor `old`, and has the accessor `index`, which is `old` or a
     /// copy of it, read them.
-    pub fn append(&mut self, index: usize, old: usize, content: &Content) {
+    pub fn append(&mut self, index: usize, old: usize, content: &Content) -> Result<(), Error> {
         let model = &self.gltf.model;
         let old = &model.accessors[old];
         let element = old.width * content.component.size();
         let stride = element.next_multiple_of(4);
-        let mut data = Vec::with_capacity(content.bytes.len() / element * stride);
+        let mut data = memory::with_room(content.bytes.len() / element * stride)?;
         for bytes in content.bytes.chunks_exact(element) {
             data.extend_from_slice(bytes);
             data.resize(data.len().next_multiple_of(4), 0);
         }
         let target = old.view.and_then(|v| self.json["bufferViews"][v].get("target").cloned());
-        let (buffer, offset) = self.extend(old.buffer(&model.views), &data);
+        let (buffer, offset) = self.extend(old.buffer(&model.views), &data)?;
 
         let mut view = json!({ "buffer": buffer, "byteOffset": offset, "byteLength": data.len() });
         if stride != element {
@@ -95,17 +97,19 @@ impl<'a> Output<'a> {
             accessor.shift_remove("normalized");
         }
         self.set_bounds(index, old.width, content);
+        Ok(())
     }
 
     /// Adds data to the end of a buffer, from a multiple of four bytes on; gives the buffer and the offset.
-    fn extend(&mut self, buffer: Option<usize>, data: &[u8]) -> (usize, usize) {
+    fn extend(&mut self, buffer: Option<usize>, data: &[u8]) -> Result<(usize, usize), Error> {
         let buffers = &self.gltf.model.buffers.buffers;
         let buffer = buffer.or(if buffers.is_empty() { None } else { Some(0) });
         let bytes = match buffer {
-            Some(b) => self.storages[buffers[b].storage].to_mut(),
+            Some(b) => owned(&mut self.storages[buffers[b].storage])?,
             None => &mut self.fresh,
         };
         let offset = bytes.len().next_multiple_of(4);
+        memory::reserve(bytes, offset - bytes.len() + data.len())?;
         bytes.resize(offset, 0);
         bytes.extend_from_slice(data);
         let length = bytes.len();
@@ -115,7 +119,7 @@ impl<'a> Output<'a> {
             entries.push(json!({}));
         }
         entries[index]["byteLength"] = length.into();
-        (index, offset)
+        Ok((index, offset))
     }
 
     /// Sets "min" and "max" where the accessor has them; numbers that stay keep their text.
@@ -163,6 +167,7 @@ impl<'a> Output<'a> {
                     side_files.push(SideFile { name, was: path.clone(), bytes });
                 }
                 Origin::Embedded(head) => {
+                    memory::expect(2 * bytes.len())?;
                     let uri = format!("{head}{}", BASE64.encode(&bytes));
                     let buffer = model.buffers.buffers.iter().position(|b| b.storage == s);
                     self.array("buffers")[buffer.expect("every storage has a buffer")]["uri"] = uri.into();
@@ -174,12 +179,14 @@ impl<'a> Output<'a> {
             self.array("buffers")[0]["uri"] = uri.into();
         }
         let same = self.json == self.gltf.json;
+        // What changes the text allocates without asking.
+        memory::expect(if same { 0 } else { 2 * self.source.len() })?;
         let bytes = if self.gltf.binary {
             let glb = glb::split(self.source)?;
             let text = (!same).then(|| splice(glb.text(self.source), &self.json));
             glb::join(&glb, self.source, text.as_deref(), bin.as_deref())?
         } else if same {
-            self.source.to_vec()
+            memory::copy(self.source)?
         } else {
             let text = without_mark(self.source);
             let mark = &self.source[..self.source.len() - text.len()];
@@ -187,6 +194,14 @@ impl<'a> Output<'a> {
         };
         Ok(Written { bytes, side_files })
     }
+}
+
+/// The bytes of a storage, copied where they are still those that were read.
+fn owned<'s>(storage: &'s mut Cow<'_, [u8]>) -> Result<&'s mut Vec<u8>, Error> {
+    if let Cow::Borrowed(bytes) = storage {
+        *storage = Cow::Owned(memory::copy(bytes)?);
+    }
+    Ok(storage.to_mut())
 }
 
 /// What the side files of the storages that have changed are called after `stem`, in their order: `stem.bin`, `stem-2.bin` ..., but for

@@ -6,6 +6,7 @@ use super::mesh::{Block, Placement};
 use super::Model;
 use crate::document::Moved;
 use crate::error::Error;
+use crate::memory;
 use crate::normals::{apply, length, map_at, turn};
 
 /// How far a position may be rounded to stay quantised, as a part of the mesh's longest side. Shorts are far below it.
@@ -58,7 +59,7 @@ impl Model {
         }
         let frames = self.frames(block)?;
         let mut packed = self.packed(block.accessor)?;
-        let mut now = Vec::with_capacity(accessor.count);
+        let mut now = memory::with_room(accessor.count)?;
         for i in 0..accessor.count {
             let mut position = accessor.vec3(&packed, i);
             let by: [f64; 3] = std::array::from_fn(|k| after[3 * i + k] - before[3 * i + k]);
@@ -84,7 +85,8 @@ impl Model {
             }
             return self.changed(block.accessor, packed);
         }
-        let bytes = now.iter().flatten().flat_map(|c| (*c as f32).to_le_bytes()).collect();
+        let mut bytes = memory::with_room(12 * now.len())?;
+        now.iter().flatten().for_each(|c| bytes.extend((*c as f32).to_le_bytes()));
         Ok(Some(Content { component: Component::F32, bytes }))
     }
 

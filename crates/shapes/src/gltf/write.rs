@@ -13,9 +13,8 @@ use super::mesh::{Instance, Primitive};
 use super::output::Output;
 use super::turned::Content;
 use super::{Gltf, Model};
-use crate::document::Moved;
+use crate::document::{Moved, Written};
 use crate::error::Error;
-use crate::shape::Written;
 
 const ATTRIBUTES: [&str; 3] = ["POSITION", "NORMAL", "TANGENT"];
 
@@ -63,9 +62,9 @@ pub(super) fn write(gltf: &Gltf, source: &[u8], moved: &Moved<'_>) -> Result<Wri
             let old = &model.accessors[accessor];
             if own(version) && old.component == content.component && !shared[accessor] && old.sparse.is_none()
             {
-                output.overwrite(accessor, content);
+                output.overwrite(accessor, content)?;
             } else {
-                output.append(index, accessor, content);
+                output.append(index, accessor, content)?;
             }
             place.insert((accessor, version), index);
         }

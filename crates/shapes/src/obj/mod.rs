@@ -11,6 +11,7 @@ mod write;
 
 use crate::document::Parsed;
 use crate::error::Error;
+use crate::memory;
 use crate::number;
 use crate::text::quote;
 use corner::Corner;
@@ -56,9 +57,9 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
                 reader.fixed_normals |= other == b"surf";
                 if other == b"mtllib" {
                     let names = statement.bytes[rest..].trim_ascii();
-                    reader.libraries.push(String::from_utf8_lossy(names).into_owned());
+                    memory::push(&mut reader.libraries, String::from_utf8_lossy(names).into_owned())?;
                 }
-                tally.statement(other, &statement);
+                tally.statement(other, &statement)?;
             }
         }
     }
@@ -89,15 +90,15 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
 impl Reader {
     /// Reads a `v`, whose `words` follow, and returns how many numbers it has.
     fn position(&mut self, statement: &Statement<'_>, mut words: Words<'_>) -> Result<usize, Error> {
+        memory::reserve(&mut self.positions, 3)?;
         for k in 0..3 {
             let word = words.next().map(|range| &statement.bytes[range]).ok_or_else(|| {
                 Error::at_line(statement.line, format!("expected a position of three numbers, found {k}"))
             })?;
             let value = number::parse(word).ok_or_else(|| {
-                Error::at_line(
-                    statement.line,
-                    format!("expected a coordinate, found {}, which is not a finite number", quote(word)),
-                )
+                let otherwise =
+                    || format!("expected a coordinate, found {}, which is not a finite number", quote(word));
+                Error::at_line(statement.line, number::wrong(word, otherwise))
             })?;
             self.decimals = self.decimals.max(number::decimals(word));
             self.positions.push(value);
@@ -133,7 +134,7 @@ impl Reader {
             match corners {
                 0 => first = index,
                 1 => {}
-                _ => self.triangles.push([first, previous, index]),
+                _ => memory::push(&mut self.triangles, [first, previous, index])?,
             }
             previous = index;
             corners += 1;

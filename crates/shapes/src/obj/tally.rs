@@ -1,8 +1,9 @@
 //! What an OBJ file holds, counted for a person.
 
 use super::statements::Statement;
+use crate::document::Fact;
+use crate::error::Error;
 use crate::facts::{FaceSizes, Names};
-use crate::shape::Fact;
 
 #[derive(Default)]
 pub(super) struct Tally<'a> {
@@ -33,15 +34,15 @@ impl<'a> Tally<'a> {
     }
 
     /// A statement that is carried over.
-    pub(super) fn statement(&mut self, keyword: &'a [u8], statement: &Statement<'a>) {
+    pub(super) fn statement(&mut self, keyword: &'a [u8], statement: &Statement<'a>) -> Result<(), Error> {
         let indent = statement.bytes.len() - statement.bytes.trim_ascii_start().len();
         let rest = statement.bytes[indent + keyword.len()..].trim_ascii();
         match keyword {
             b"vt" => self.texture_coordinates += 1,
-            b"o" => self.objects.add(rest),
-            b"g" => self.groups.add(rest),
-            b"usemtl" => self.materials.add(rest),
-            b"mtllib" => self.libraries.add(rest),
+            b"o" => self.objects.add(rest)?,
+            b"g" => self.groups.add(rest)?,
+            b"usemtl" => self.materials.add(rest)?,
+            b"mtllib" => self.libraries.add(rest)?,
             b"l" => self.lines += 1,
             b"p" => self.points += 1,
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm"
@@ -49,8 +50,9 @@ impl<'a> Tally<'a> {
             // Smoothing, rendering: known, and nothing to tell.
             b"s" | b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"shadow_obj" | b"trace_obj"
             | b"ctech" | b"stech" | b"usemap" | b"maplib" => {}
-            _ => self.unknown.add(keyword),
+            _ => self.unknown.add(keyword)?,
         }
+        Ok(())
     }
 
     pub(super) fn facts(self, normals: usize) -> Vec<Fact> {

@@ -5,6 +5,7 @@ use super::header::{Element, Encoding, Header, Kind};
 use super::{check_room, Body, Start, Vertices, FIELDS};
 use crate::document::Moved;
 use crate::error::Error;
+use crate::memory;
 use crate::number::{self, Style};
 use crate::text::{self, Patcher};
 use std::ops::Range;
@@ -46,7 +47,7 @@ fn walk_row(
     element: &Element,
     source: &[u8],
     (line, number): (Range<usize>, u64),
-    mut see: impl FnMut(usize, Range<usize>) -> Result<(), String>,
+    mut see: impl FnMut(usize, Range<usize>) -> Result<(), Error>,
 ) -> Result<bool, Error> {
     let wrong = |message: String| Error::at_line(number, message);
     let mut words = text::tokens(&source[line.clone()], line.start);
@@ -57,7 +58,7 @@ fn walk_row(
         };
         let word = words.next().ok_or_else(ended)?;
         match property.kind {
-            Kind::Scalar(_) => see(index, word).map_err(wrong)?,
+            Kind::Scalar(_) => see(index, word)?,
             Kind::List { .. } => {
                 let word = &source[word];
                 let Some(count) = number::parse(word).filter(|&c| c >= 0.0 && c.fract() == 0.0) else {
@@ -65,7 +66,7 @@ fn walk_row(
                     return Err(wrong(format!("expected the length of the list {name}, found {shown}")));
                 };
                 for _ in 0..count as u64 {
-                    see(index, words.next().ok_or_else(ended)?).map_err(wrong)?;
+                    see(index, words.next().ok_or_else(ended)?)?;
                 }
             }
         }
@@ -111,16 +112,15 @@ pub(super) fn read(
         if index == vertices.index {
             body.start = lines.next;
             check_room(&vertices.element, Encoding::Ascii, body.start.byte, source)?;
-            body.positions.reserve_exact(3 * vertices.element.count);
+            body.positions = memory::with_room(3 * vertices.element.count)?;
             let (positions, decimals) = (&mut body.positions, &mut body.decimals);
             body.longer += each_vertex(vertices, &mut lines, |vertex, fields, line| {
                 for (slot, field) in fields[..3].iter().enumerate() {
                     let word = &source[field.clone()];
                     let value = number::parse(word).ok_or_else(|| {
                         let (name, shown) = (FIELDS[slot], text::quote(word));
-                        let message =
-                            format!("vertex {vertex}: expected a finite number for {name}, found {shown}");
-                        Error::at_line(line, message)
+                        let otherwise = || format!("expected a finite number for {name}, found {shown}");
+                        Error::at_line(line, format!("vertex {vertex}: {}", number::wrong(word, otherwise)))
                     })?;
                     positions.push(value);
                     *decimals = number::decimals(word).max(*decimals);
@@ -137,15 +137,20 @@ pub(super) fn read(
                 let is_longer = walk_row(element, source, line, |property, word| {
                     if wanted.is_some_and(|(_, list)| list == property) {
                         let word = &source[word];
-                        corners.push(number::parse(word).ok_or_else(|| {
-                            format!("face {row}: expected a vertex index, found {}", text::quote(word))
-                        })?);
+                        let corner = number::parse(word).ok_or_else(|| {
+                            let shown = text::quote(word);
+                            Error::at_line(
+                                number,
+                                format!("face {row}: expected a vertex index, found {shown}"),
+                            )
+                        })?;
+                        memory::push(&mut corners, corner)?;
                     }
                     Ok(())
                 })?;
                 body.longer += usize::from(is_longer);
                 if let Some((what, _)) = wanted {
-                    faces.add(what, row, &corners).map_err(|message| Error::at_line(number, message))?;
+                    faces.add(what, row, &corners, |message| Error::at_line(number, message))?;
                 }
             }
         }
@@ -164,8 +169,8 @@ pub(super) fn write(
     moved: &Moved<'_>,
 ) -> Result<Vec<u8>, Error> {
     let mut lines = Lines { source, line_end, next: start };
-    let mut patcher = Patcher::new(source);
-    let style = Style::new(decimals, moved.before, 3);
+    let mut patcher = Patcher::new(source)?;
+    let style = Style::new(decimals, moved.after, 3);
     each_vertex(vertices, &mut lines, |vertex, fields, _| {
         let at = |slot: usize| number::parse(&source[fields[3 + slot].clone()]).unwrap_or(f64::NAN);
         let turned = vertices.turned(moved, vertex, [0, 1, 2].map(at));
@@ -181,10 +186,10 @@ pub(super) fn write(
                 _ => (Style::for_normal([3, 4, 5].map(|k| &source[fields[k].clone()])), after),
             };
             if style.differs(before, after) {
-                style.print(after, patcher.replace(fields[slot].clone()));
+                style.print(after, patcher.replace(fields[slot].clone())?);
             }
         }
         Ok(())
     })?;
-    Ok(patcher.finish())
+    patcher.finish()
 }

@@ -6,6 +6,7 @@ use super::scalar::ByteOrder;
 use super::{check_room, Body, Start, Vertices, FIELDS};
 use crate::document::Moved;
 use crate::error::Error;
+use crate::memory;
 
 /// Shows `see` each property of the row at `at`: its index, and where it starts and how many numbers it has there. Returns
 /// where the next row starts.
@@ -14,7 +15,7 @@ fn walk_row(
     source: &[u8],
     mut at: usize,
     order: ByteOrder,
-    mut see: impl FnMut(usize, usize, usize),
+    mut see: impl FnMut(usize, usize, usize) -> Result<(), Error>,
 ) -> Result<usize, Error> {
     for (index, property) in element.properties.iter().enumerate() {
         let left = source.len() - at;
@@ -29,7 +30,7 @@ fn walk_row(
                 if scalar.size() > left {
                     return Err(ended(format!("{} bytes", scalar.size())));
                 }
-                see(index, at, 1);
+                see(index, at, 1)?;
                 at += scalar.size();
             }
             Kind::List { count, item } => {
@@ -46,7 +47,7 @@ fn walk_row(
                     return Err(ended(format!("a list of {length} items")));
                 }
                 at += count.size();
-                see(index, at, length as usize);
+                see(index, at, length as usize)?;
                 at += length as usize * item.size();
             }
         }
@@ -76,6 +77,7 @@ fn each_vertex(
                     if let Some(slot) = vertices.slots[property] {
                         fields[slot] = at;
                     }
+                    Ok(())
                 })?;
             }
         }
@@ -100,7 +102,7 @@ pub(super) fn read(
         if index == vertices.index {
             check_room(&vertices.element, encoding, at, source)?;
             body.start.byte = at;
-            body.positions.reserve_exact(3 * vertices.element.count);
+            body.positions = memory::with_room(3 * vertices.element.count)?;
             at = each_vertex(vertices, source, at, order, |vertex, fields| {
                 for slot in 0..3 {
                     let value = vertices.scalars[slot].get(&source[fields[slot]..], order);
@@ -131,13 +133,14 @@ pub(super) fn read(
                 {
                     if list == property {
                         let items = source[at..at + length * item.size()].chunks_exact(item.size());
+                        memory::reserve(&mut corners, length)?;
                         corners.extend(items.map(|bytes| item.get(bytes, order)));
                     }
                 }
+                Ok(())
             })?;
             if let Some((what, _)) = wanted {
-                let wrong = |message| Error::at_byte(row_at as u64, message);
-                faces.add(what, row, &corners).map_err(wrong)?;
+                faces.add(what, row, &corners, |message| Error::at_byte(row_at as u64, message))?;
             }
         }
     }
@@ -152,7 +155,7 @@ pub(super) fn write(
     order: ByteOrder,
     moved: &Moved<'_>,
 ) -> Result<Vec<u8>, Error> {
-    let mut out = source.to_vec();
+    let mut out = memory::copy(source)?;
     each_vertex(vertices, source, start.byte, order, |vertex, fields| {
         for slot in 0..3 {
             let (before, after) = (moved.before[3 * vertex + slot], moved.after[3 * vertex + slot]);

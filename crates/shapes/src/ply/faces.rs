@@ -1,7 +1,9 @@
 //! Polygons and strips as triangles.
 
 use super::header::{Header, Kind};
+use crate::error::Error;
 use crate::facts::FaceSizes;
+use crate::memory;
 
 /// The triangles found so far, and where the header says that there are more.
 pub(super) struct Faces {
@@ -51,11 +53,17 @@ impl Faces {
             .or_else(|| of(self.strips_in).map(|p| (Corners::Strips, p)))
     }
 
-    /// Adds row `row` of its element; the sentence says what is wrong with it.
-    pub(super) fn add(&mut self, what: Corners, row: usize, corners: &[f64]) -> Result<(), String> {
+    /// Adds row `row` of its element; `wrong` gives a sentence its place.
+    pub(super) fn add(
+        &mut self,
+        what: Corners,
+        row: usize,
+        corners: &[f64],
+        wrong: impl Fn(String) -> Error,
+    ) -> Result<(), Error> {
         match what {
-            Corners::Polygons => self.add_polygon(row, corners),
-            Corners::Strips => self.add_strip(row, corners),
+            Corners::Polygons => self.add_polygon(row, corners, wrong),
+            Corners::Strips => self.add_strip(row, corners, wrong),
         }
     }
 
@@ -63,11 +71,18 @@ impl Faces {
         (corner >= 0.0 && corner < self.vertices as f64 && corner.fract() == 0.0).then_some(corner as u32)
     }
 
-    fn add_polygon(&mut self, row: usize, corners: &[f64]) -> Result<(), String> {
+    fn add_polygon(
+        &mut self,
+        row: usize,
+        corners: &[f64],
+        wrong: impl Fn(String) -> Error,
+    ) -> Result<(), Error> {
+        memory::reserve(&mut self.triangles, corners.len().saturating_sub(2))?;
         let mut fan = [0; 3];
         for (k, &corner) in corners.iter().enumerate() {
             fan[k.min(2)] = self.index(corner).ok_or_else(|| {
-                format!("face {row} has the vertex index {corner}, but there are {} vertices", self.vertices)
+                let count = self.vertices;
+                wrong(format!("face {row} has the vertex index {corner}, but there are {count} vertices"))
             })?;
             if k >= 2 {
                 self.triangles.push(fan);
@@ -79,7 +94,13 @@ impl Faces {
     }
 
     /// Triangles that share an edge with the one before, every other one turned round; -1 starts anew.
-    fn add_strip(&mut self, row: usize, corners: &[f64]) -> Result<(), String> {
+    fn add_strip(
+        &mut self,
+        row: usize,
+        corners: &[f64],
+        wrong: impl Fn(String) -> Error,
+    ) -> Result<(), Error> {
+        memory::reserve(&mut self.triangles, corners.len().saturating_sub(2))?;
         self.strips += 1;
         let mut last = [0; 2];
         let mut length = 0;
@@ -89,7 +110,8 @@ impl Faces {
                 continue;
             }
             let index = self.index(corner).ok_or_else(|| {
-                format!("strip {row} has the vertex index {corner}, but there are {} vertices", self.vertices)
+                let count = self.vertices;
+                wrong(format!("strip {row} has the vertex index {corner}, but there are {count} vertices"))
             })?;
             if length >= 2 && last[0] != last[1] && last[0] != index && last[1] != index {
                 let [a, b] = last;

@@ -4,7 +4,9 @@ use super::faces::Faces;
 use super::header::{Element, Encoding, Header, Kind};
 use super::scalar::ByteOrder;
 use super::{Body, Vertices};
-use crate::shape::Fact;
+use crate::document::Fact;
+use crate::facts::SPLATS_MOVE;
+use crate::text::printable;
 
 pub(super) fn of(header: &Header, vertices: &Vertices, faces: &Faces, body: &Body) -> Vec<Fact> {
     let mut facts = Vec::new();
@@ -31,10 +33,7 @@ pub(super) fn of(header: &Header, vertices: &Vertices, faces: &Faces, body: &Bod
     }
     let is_splat = ["f_dc_0", "scale_0", "rot_0"].iter().all(|name| vertices.element.find(name).is_some());
     if is_splat {
-        say(
-            "splats",
-            "3D Gaussian splats, moved as points: shape, rotation and colour stay as they are".into(),
-        );
+        say("splats", SPLATS_MOVE.into());
     }
     let others = names_of(&vertices.element, |index| match vertices.slots[index] {
         // Incomplete normals do not turn.
@@ -58,7 +57,7 @@ pub(super) fn of(header: &Header, vertices: &Vertices, faces: &Faces, body: &Bod
         }
     }
     if let Some(texture) = &header.texture {
-        say("texture", texture.clone());
+        say("texture", printable(texture.as_bytes()));
     }
     if header.comments > 0 {
         say("comments", header.comments.to_string());

@@ -2,7 +2,7 @@
 
 use super::scalar::{ByteOrder, Scalar};
 use crate::error::Error;
-use crate::text;
+use crate::text::{self, printable};
 
 /// Longer headers are refused: nobody writes one, and it bounds what a hostile one can make us remember.
 const LONGEST: usize = 1 << 20;
@@ -79,7 +79,7 @@ impl Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    /// Number of `comment` and `obj_info` lines.
+    /// Number of `comment` and `obj_info` lines, and of those that no keyword starts.
     pub comments: usize,
     /// What `comment TextureFile` names.
     pub texture: Option<String>,
@@ -127,7 +127,7 @@ pub(super) fn read(source: &[u8]) -> Result<Header, Error> {
                 comments += 1;
                 if words.next() == Some(b"TextureFile") {
                     let name = line.windows(11).position(|w| w == b"TextureFile").map_or(0, |n| n + 11);
-                    texture = Some(printable(line[name..].trim_ascii()));
+                    texture = Some(String::from_utf8_lossy(line[name..].trim_ascii()).into_owned());
                 }
             }
             Some(b"format") => {
@@ -172,6 +172,8 @@ pub(super) fn read(source: &[u8]) -> Result<Header, Error> {
                 element.properties.push(property(words).map_err(wrong)?);
             }
             Some(b"end_header") => break,
+            // A line of another program's own, which the format does not have.
+            Some(_) if !may_describe(line) => comments += 1,
             Some(word) => {
                 return Err(wrong(format!(
                     "expected format, comment, element, property or end_header, found {}",
@@ -185,6 +187,13 @@ pub(super) fn read(source: &[u8]) -> Result<Header, Error> {
     };
     let body = at.min(source.len());
     Ok(Header { encoding, elements, comments, texture, line_end, body, body_line: line_number + 1 })
+}
+
+/// Whether a line that starts with no keyword may be a misspelt one that says what the body holds.
+fn may_describe(line: &[u8]) -> bool {
+    let words: Vec<&[u8]> = text::tokens(line, 0).map(|range| &line[range]).take(8).collect();
+    let is_property = words[1..].iter().any(|word| *word == b"list" || Scalar::from_name(word).is_some());
+    is_property || matches!(words[..], [_, _, count] if count.iter().all(u8::is_ascii_digit))
 }
 
 /// `float x` or `list uchar int vertex_indices`.
@@ -205,9 +214,4 @@ fn property<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Result<Property, S
         b"" => Err("the property has no name".into()),
         name => Ok(Property { name: printable(name), kind }),
     }
-}
-
-/// A name as text that does no harm on a terminal.
-fn printable(name: &[u8]) -> String {
-    String::from_utf8_lossy(name).replace(char::is_control, "?")
 }

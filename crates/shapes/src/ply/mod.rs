@@ -11,10 +11,10 @@ mod facts;
 mod header;
 mod scalar;
 
-use crate::document::{Document, Moved, Parsed};
+use crate::document::{Document, Moved, Parsed, Written};
 use crate::error::Error;
 use crate::normals;
-use crate::shape::Written;
+use crate::precision::Precision;
 use faces::Faces;
 use header::{Element, Encoding, Header, Kind};
 use scalar::Scalar;
@@ -143,6 +143,7 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
             vertices,
             start: body.start,
             decimals: body.decimals,
+            texture: header.texture,
         }),
     })
 }
@@ -171,11 +172,26 @@ struct Ply {
     vertices: Vertices,
     start: Start,
     decimals: usize,
+    /// What `comment TextureFile` names.
+    texture: Option<String>,
 }
 
 impl Document for Ply {
     fn has_normals(&self) -> bool {
         self.vertices.normals
+    }
+
+    fn precision(&self, axis: usize) -> Precision {
+        match (self.vertices.scalars[axis], self.encoding) {
+            (scalar, _) if scalar.is_integer() => Precision::Whole,
+            (_, Encoding::Ascii) => Precision::Digits(self.decimals),
+            (Scalar::F32, _) => Precision::Single,
+            _ => Precision::Double,
+        }
+    }
+
+    fn named_files(&self) -> Vec<String> {
+        self.texture.iter().cloned().collect()
     }
 
     fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {

@@ -1,11 +1,12 @@
 //! Ascii STL: `solid`, and `facet normal`, `outer loop`, three `vertex` a triangle.
 
 use super::{faces, moved_normal, triangle};
-use crate::document::{Document, Moved, Parsed};
+use crate::document::{Document, Moved, Parsed, Written};
 use crate::error::Error;
 use crate::facts::Names;
+use crate::memory;
 use crate::number::{self, Style};
-use crate::shape::Written;
+use crate::precision::Precision;
 use crate::text::{self, Patcher};
 use std::ops::Range;
 
@@ -16,6 +17,10 @@ struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
+    fn new(source: &'a [u8]) -> Self {
+        Words { source, at: text::bom_length(source) }
+    }
+
     fn next(&mut self) -> Option<Range<usize>> {
         let word = text::tokens(&self.source[self.at..], self.at).next()?;
         self.at = word.end;
@@ -55,9 +60,18 @@ impl<'a> Words<'a> {
             Some(word) => (word.start, format!("found {}", text::quote(&self.source[word]))),
             None => (self.source.len(), "the file ends".into()),
         };
+        Error::at_line(self.line_of(at), format!("expected {expected}, {found}"))
+    }
+
+    fn no_number(&self, word: Range<usize>) -> Error {
+        let found = &self.source[word.clone()];
+        let otherwise = || format!("expected a finite number, found {}", text::quote(found));
+        Error::at_line(self.line_of(word.start), number::wrong(found, otherwise))
+    }
+
+    fn line_of(&self, at: usize) -> u64 {
         let line_ends = |ends: u8| self.source[..at].iter().filter(|&&b| b == ends).count();
-        let line = 1 + line_ends(b'\n').max(line_ends(b'\r'));
-        Error::at_line(line as u64, format!("expected {expected}, {found}"))
+        1 + line_ends(b'\n').max(line_ends(b'\r')) as u64
     }
 }
 
@@ -69,7 +83,8 @@ struct Facet {
 }
 
 /// Shows `see` each facet; returns the names of the solids.
-fn each_facet<'a>(words: &mut Words<'a>, mut see: impl FnMut(Facet)) -> Result<Vec<&'a [u8]>, Error> {
+fn each_facet(source: &[u8], mut see: impl FnMut(Facet) -> Result<(), Error>) -> Result<Vec<&[u8]>, Error> {
+    let words = &mut Words::new(source);
     let mut names = Vec::new();
     let mut open = false;
     while let Some(word) = words.next() {
@@ -84,18 +99,18 @@ fn each_facet<'a>(words: &mut Words<'a>, mut see: impl FnMut(Facet)) -> Result<V
                 words.expect("vertex")?;
                 for (k, word) in (3 * corner..).zip(words.three()?) {
                     let value = number::parse(&words.source[word.clone()]);
-                    positions[k] = value.ok_or_else(|| words.wrong(Some(word.clone()), "a finite number"))?;
+                    positions[k] = value.ok_or_else(|| words.no_number(word.clone()))?;
                     corners[k] = word;
                 }
             }
             words.expect("endloop")?;
             words.expect("endfacet")?;
-            see(Facet { normal, corners, positions });
+            see(Facet { normal, corners, positions })?;
         } else if words.is(&word, "endsolid") && open {
             words.rest_of_line();
             open = false;
         } else if words.is(&word, "solid") && !open {
-            names.push(words.rest_of_line());
+            memory::push(&mut names, words.rest_of_line())?;
             open = true;
         } else {
             return Err(words.wrong(Some(word), if open { "'facet' or 'endsolid'" } else { "'solid'" }));
@@ -110,19 +125,21 @@ fn each_facet<'a>(words: &mut Words<'a>, mut see: impl FnMut(Facet)) -> Result<V
 pub(super) fn read(source: &[u8]) -> Result<Parsed, Error> {
     let mut positions = Vec::new();
     let mut decimals = 0;
-    let solids = each_facet(&mut Words { source, at: 0 }, |facet| {
+    let solids = each_facet(source, |facet| {
+        memory::reserve(&mut positions, 9)?;
         positions.extend(facet.positions);
         let most = facet.corners.iter().map(|word| number::decimals(&source[word.clone()])).max();
         decimals = decimals.max(most.unwrap_or(0));
+        Ok(())
     })?;
     let mut facts = vec![("encoding".into(), "ascii".into())];
     let mut names = Names::default();
-    solids.into_iter().for_each(|name| names.add(name));
+    solids.into_iter().try_for_each(|name| names.add(name))?;
     names.tell("solids", &mut facts);
     facts.push(("normals".into(), "turned with their triangles".into()));
     Ok(Parsed {
         dim: 3,
-        faces: Some(faces(positions.len() / 3)),
+        faces: Some(faces(positions.len() / 3)?),
         positions,
         facts,
         document: Box::new(Ascii { decimals }),
@@ -139,11 +156,15 @@ impl Document for Ascii {
         false
     }
 
+    fn precision(&self, _axis: usize) -> Precision {
+        Precision::Digits(self.decimals)
+    }
+
     fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {
-        let style = Style::new(self.decimals, moved.before, 3);
-        let mut patcher = Patcher::new(source);
+        let style = Style::new(self.decimals, moved.after, 3);
+        let mut patcher = Patcher::new(source)?;
         let mut index = 0;
-        each_facet(&mut Words { source, at: 0 }, |facet| {
+        each_facet(source, |facet| {
             let (before, after) = (triangle(moved.before, index), triangle(moved.after, index));
             index += 1;
             let read = |word: &Range<usize>| number::parse(&source[word.clone()]).unwrap_or(f64::NAN);
@@ -153,16 +174,17 @@ impl Document for Ascii {
                 let normal_style = Style::for_normal([x, y, z].map(|word| &source[word.clone()]));
                 for ((word, was), value) in facet.normal.into_iter().zip(old).zip(normal) {
                     if was.is_nan() || normal_style.differs(was, value) {
-                        normal_style.print(value, patcher.replace(word));
+                        normal_style.print(value, patcher.replace(word)?);
                     }
                 }
             }
             for ((word, &was), &value) in facet.corners.into_iter().zip(before).zip(after) {
                 if style.differs(was, value) {
-                    style.print(value, patcher.replace(word));
+                    style.print(value, patcher.replace(word)?);
                 }
             }
+            Ok(())
         })?;
-        Ok(Written { bytes: patcher.finish(), side_files: Vec::new() })
+        Ok(Written { bytes: patcher.finish()?, side_files: Vec::new() })
     }
 }

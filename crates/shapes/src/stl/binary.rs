@@ -1,9 +1,10 @@
 //! Binary STL: 80 bytes of header, a count, and 50 bytes a triangle (normal, three corners, two attribute bytes).
 
 use super::{faces, moved_normal, triangle};
-use crate::document::{Document, Moved, Parsed};
+use crate::document::{Document, Moved, Parsed, Written};
 use crate::error::Error;
-use crate::shape::Written;
+use crate::memory;
+use crate::precision::Precision;
 
 /// The bytes before the triangles, and of each.
 const HEAD: usize = 84;
@@ -30,7 +31,10 @@ pub(super) fn read(source: &[u8]) -> Result<Parsed, Error> {
             source.len()
         )));
     };
-    let room = (source.len() - HEAD) / TRIANGLE;
+    let (room, rest) = ((source.len() - HEAD) / TRIANGLE, (source.len() - HEAD) % TRIANGLE);
+    // Writers that did not know the number when they began may leave it 0: then it follows from the length.
+    let open = count == 0 && rest == 0;
+    let count = if open { room } else { count };
     if count > room {
         return Err(Error::at_byte(
             80,
@@ -38,7 +42,7 @@ pub(super) fn read(source: &[u8]) -> Result<Parsed, Error> {
         ));
     }
     let (body, extra) = source[HEAD..].split_at(count * TRIANGLE);
-    let mut positions = Vec::with_capacity(9 * count);
+    let mut positions = memory::with_room(9 * count)?;
     let (mut coloured, mut without_normal) = (0, 0);
     for (index, facet) in body.chunks_exact(TRIANGLE).enumerate() {
         for (k, bytes) in facet[12..48].chunks_exact(4).enumerate() {
@@ -67,6 +71,9 @@ pub(super) fn read(source: &[u8]) -> Result<Parsed, Error> {
     if !header.trim().is_empty() {
         say("header", header.trim().to_string());
     }
+    if open && count > 0 {
+        say("number of triangles", format!("0 in the header, {count} behind it (read; the header stays)"));
+    }
     if without_normal < count {
         say("normals", "turned with their triangles".into());
     }
@@ -79,7 +86,7 @@ pub(super) fn read(source: &[u8]) -> Result<Parsed, Error> {
     if !extra.is_empty() {
         say("behind the last triangle", format!("{} bytes (carried over)", extra.len()));
     }
-    Ok(Parsed { dim: 3, positions, faces: Some(faces(3 * count)), facts, document: Box::new(Binary) })
+    Ok(Parsed { dim: 3, positions, faces: Some(faces(3 * count)?), facts, document: Box::new(Binary) })
 }
 
 struct Binary;
@@ -89,8 +96,12 @@ impl Document for Binary {
         false
     }
 
+    fn precision(&self, _axis: usize) -> Precision {
+        Precision::Single
+    }
+
     fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {
-        let mut bytes = source.to_vec();
+        let mut bytes = memory::copy(source)?;
         for index in 0..moved.before.len() / 9 {
             let (before, after) = (triangle(moved.before, index), triangle(moved.after, index));
             let facet = &mut bytes[HEAD + index * TRIANGLE..][..TRIANGLE];

@@ -5,7 +5,9 @@ mod binary;
 
 use crate::document::Parsed;
 use crate::error::Error;
+use crate::memory;
 use crate::normals::{cross, length};
+use crate::text::bom_length;
 
 pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
     if is_ascii(source) {
@@ -18,15 +20,17 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
 /// Many binary files start with "solid" too. What tells: the length that the count of triangles demands, and the zero bytes
 /// that a binary file hardly lacks, and a text has behind its end at most.
 fn is_ascii(source: &[u8]) -> bool {
-    let text = source.trim_ascii_start();
+    let text = source[bom_length(source)..].trim_ascii_start();
     let padding = text.iter().rev().take_while(|byte| **byte == 0 || byte.is_ascii_whitespace()).count();
     let solid = text.len() >= 5 && text[..5].eq_ignore_ascii_case(b"solid");
     solid && !binary::has_exact_length(source) && !text[..text.len() - padding].contains(&0)
 }
 
 /// Triangles of corners in file order.
-fn faces(corners: usize) -> Vec<[u32; 3]> {
-    (0..corners as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect()
+fn faces(corners: usize) -> Result<Vec<[u32; 3]>, Error> {
+    let mut faces = memory::with_room(corners / 3)?;
+    faces.extend((0..corners as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]));
+    Ok(faces)
 }
 
 /// The nine coordinates of triangle `index`.

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use crate::error::Error;
-use crate::number;
-use crate::text::{quote, tokens, Line, Lines};
+use crate::number::{self, has_decimal_comma};
+use crate::text::{printable, quote, tokens, Line, Lines};
 
 /// What stands between two columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,7 +111,7 @@ impl Layout {
             }
             let row = is_row(numeric.len(), fields.len());
             if let Some(found) = decimal_comma(line.bytes, separator, row) {
-                return Err(no_decimal_commas(line.number, found));
+                return Err(Error::at_line(line.number, number::wrong(found, String::new)));
             }
             if row {
                 let layout = Layout {
@@ -156,7 +156,7 @@ impl Layout {
         if let Some(column) = self.position.iter().find(|column| !numeric.contains(column)) {
             return Err(Error::at_line(self.line, format!("expected a number in column {}", column + 1)));
         }
-        self.names = names.map(|names| names.join(", "));
+        self.names = names.map(|names| printable(names.join(", ").as_bytes()));
         Ok(self)
     }
 
@@ -171,13 +171,9 @@ impl Layout {
             let field = fields[column].clone();
             let text = &line.bytes[field.clone()];
             let value = number::parse(text).ok_or_else(|| {
-                if has_decimal_comma(text) {
-                    return no_decimal_commas(line.number, text);
-                }
-                Error::at_line(
-                    line.number,
-                    format!("expected a finite number in column {}, found {}", column + 1, quote(text)),
-                )
+                let otherwise =
+                    || format!("expected a finite number in column {}, found {}", column + 1, quote(text));
+                Error::at_line(line.number, number::wrong(text, otherwise))
             })?;
             Ok((field, value))
         })
@@ -200,21 +196,6 @@ fn decimal_comma(line: &[u8], separator: Separator, row: bool) -> Option<&[u8]> 
         let numbers = found().filter(|text| number::parse(text).is_some() || has_decimal_comma(text)).count();
         found().find(|text| is_row(numbers, fields.len()) && has_decimal_comma(text))
     })
-}
-
-fn has_decimal_comma(text: &[u8]) -> bool {
-    let Some(at) = text.iter().position(|&byte| byte == b',') else { return false };
-    let digit = |at: usize| text.get(at).is_some_and(u8::is_ascii_digit);
-    let mut point = text.to_vec();
-    point[at] = b'.';
-    at > 0 && digit(at - 1) && digit(at + 1) && number::parse(&point).is_some()
-}
-
-fn no_decimal_commas(line: u64, found: &[u8]) -> Error {
-    Error::at_line(
-        line,
-        format!("decimal commas are not read, expected a decimal point, found {}", quote(found)),
-    )
 }
 
 /// The number of rows that a line with nothing else promises: one with more columns must follow.

@@ -8,11 +8,12 @@ mod layout;
 
 use std::ops::Range;
 
-use crate::document::{Document, Moved, Parsed};
+use crate::document::{Document, Fact, Moved, Parsed, Written};
 use crate::error::Error;
+use crate::memory;
 use crate::normals;
 use crate::number::{self, Style};
-use crate::shape::{Fact, Written};
+use crate::precision::Precision;
 use crate::text::{Line, Patcher};
 use layout::{rows, Layout};
 
@@ -34,6 +35,7 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
                 ),
             ));
         }
+        memory::reserve(&mut positions, dim)?;
         for number in layout.numbers(&line, &fields, &layout.position) {
             let (field, value) = number?;
             decimals = decimals.max(number::decimals(&line.bytes[field]));
@@ -91,11 +93,15 @@ impl Document for Table {
         self.layout.normal.is_some()
     }
 
+    fn precision(&self, _axis: usize) -> Precision {
+        Precision::Digits(self.decimals)
+    }
+
     fn write(&self, source: &[u8], moved: &Moved<'_>) -> Result<Written, Error> {
         let layout = &self.layout;
         let dim = layout.position.len();
         let style = Style::new(self.decimals, moved.after, dim);
-        let mut patcher = Patcher::new(source);
+        let mut patcher = Patcher::new(source)?;
         let (mut fields, mut changes) = (Vec::new(), Vec::new());
         for (index, line) in data(source, layout).enumerate() {
             layout.separator.split(line.bytes, &mut fields);
@@ -112,11 +118,11 @@ impl Document for Table {
             changes.sort_by_key(|(field, ..)| field.start);
             for (field, was, is, style) in &changes {
                 if style.differs(*was, *is) {
-                    style.print(*is, patcher.replace(line.start + field.start..line.start + field.end));
+                    style.print(*is, patcher.replace(line.start + field.start..line.start + field.end)?);
                 }
             }
         }
-        Ok(Written { bytes: patcher.finish(), side_files: Vec::new() })
+        Ok(Written { bytes: patcher.finish()?, side_files: Vec::new() })
     }
 }
 

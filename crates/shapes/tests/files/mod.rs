@@ -89,6 +89,10 @@ pub fn check_data_files(
         };
         let again = read(&bent_file, format).unwrap_or_else(|error| panic!("{name} bent: {error}"));
         assert_eq!(again.faces(), shape.faces(), "{name}");
+        assert!(
+            shape.round(&asked).unwrap() == again.positions(),
+            "{name}: what was written is not what is told"
+        );
         assert_eq!(again.facts(), shape.facts(), "{name}");
         let largest = asked.iter().fold(0.0, |l: f64, c| l.max(c.abs()));
         let is_whole = shape.facts().iter().any(|(what, _)| what == "positions");

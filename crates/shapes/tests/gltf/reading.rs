@@ -319,3 +319,48 @@ fn facts_tell_what_is_carried_over() {
     assert_eq!(fact("instances"), Some("1"));
     assert_eq!(fact("images"), None);
 }
+
+#[test]
+fn gaussian_splats_are_called_so_and_packed_ones_refused() {
+    let splats = |inner: serde_json::Value| {
+        let mut b = Builder::new();
+        let position = b.floats("VEC3", &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+        let scale = b.floats("VEC3", &[0.1; 6]);
+        b.mesh(json!({
+            "mode": 0,
+            "attributes": { "POSITION": position, "KHR_gaussian_splatting:SCALE": scale },
+            "extensions": { "KHR_gaussian_splatting": inner },
+        }));
+        b.node(json!({ "mesh": 0 }));
+        b.json["extensionsUsed"] = json!(["KHR_gaussian_splatting"]);
+        b.json["extensionsRequired"] = json!(["KHR_gaussian_splatting"]);
+        b
+    };
+    let shape = splats(json!({ "kernel": "ellipse" })).read();
+    let fact = shape.facts().iter().find(|(name, _)| name == "splats").unwrap();
+    assert!(fact.1.starts_with("3D Gaussian splats"));
+    let packed = splats(json!({ "extensions": { "KHR_gaussian_splatting_compression_spz_2": {} } }));
+    assert!(packed.refusal().contains("uses the extension KHR_gaussian_splatting_compression_spz_2"));
+}
+
+#[test]
+fn numbers_beyond_all_measure_are_refused_in_one_sentence() {
+    for (key, value) in [("translation", "[1e400, 0, 0]"), ("scale", "[1, 1, -1e999]"), ("mesh", "1e400")] {
+        let mut b = Builder::new();
+        let position = b.floats("VEC3", &[0.0, 0.0, 0.0]);
+        b.mesh(json!({ "attributes": { "POSITION": position } }));
+        b.node(json!({ "mesh": 0 }));
+        let huge: serde_json::Value = serde_json::from_str(value).unwrap();
+        b.json["nodes"][0][key] = huge;
+        assert!(b.refusal().starts_with(&format!("nodes[0].{key}: ")), "{}", b.refusal());
+    }
+}
+
+#[test]
+fn a_buffer_that_is_a_git_lfs_pointer_is_called_so() {
+    let pointer =
+        |_: &str| Ok(b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 7\n".to_vec());
+    let text = br#"{"asset": {"version": "2.0"}, "buffers": [{"uri": "a.bin", "byteLength": 36}]}"#;
+    let error = Shape::read(text.to_vec(), Format::Gltf, &pointer).err().unwrap();
+    assert!(error.to_string().contains("a.bin\": this is a Git LFS pointer"), "{error}");
+}

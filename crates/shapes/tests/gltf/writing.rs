@@ -34,6 +34,40 @@ fn len(parts: &Parts, key: &str) -> usize {
 }
 
 #[test]
+fn what_is_told_is_what_is_read_again() {
+    for node in [
+        json!({ "mesh": 0 }),
+        json!({ "mesh": 0, "translation": [5e6, 0, 0] }),
+        json!({ "mesh": 0, "matrix": [0, 1000, 0, 0, -1000, 0, 0, 0, 0, 0, 1000, 0, 5e6, 1, 2, 1] }),
+    ] {
+        let mut b = quad();
+        b.node(node);
+        let shape = b.read();
+        let mut asked = bent(shape.positions());
+        asked[..3].copy_from_slice(&shape.positions()[..3]);
+        let written = shape.write(&asked, None).unwrap().bytes;
+        assert_eq!(shape.round(&asked).unwrap(), read_glb(&written).unwrap().positions());
+    }
+}
+
+#[test]
+fn the_precision_is_that_of_the_nodes_own_space() {
+    let mut b = quad();
+    b.node(json!({ "mesh": 0, "translation": [5e6, 0, 0] }));
+    let near = b.read();
+    // Far away in the world, near in its node: nothing is lost.
+    assert!(near.step().unwrap() < 2e-7);
+    let place = near.round(&[5e6 + 0.05, 0.5, 0.0]).unwrap();
+    assert!((place[0] - 5e6 - 0.05).abs() < 2e-9);
+    let mut b = quad();
+    b.node(json!({ "mesh": 0, "scale": [1e6, 1, 1] }));
+    let stretched = b.read();
+    assert!((stretched.step().unwrap() - 1e6 * f64::from(f32::EPSILON)).abs() < 1e-9);
+    let place = stretched.round(&[1e6 + 0.04, 0.5, 0.0]).unwrap();
+    assert!((place[0] - 1e6).abs() < 1e-9, "{place:?}");
+}
+
+#[test]
 fn an_unmoved_file_is_the_same_file() {
     let mut b = quad();
     b.node(json!({ "mesh": 0, "rotation": [0.1, 0.2, 0.3, 0.9] }));

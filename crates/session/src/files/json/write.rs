@@ -19,7 +19,7 @@ pub(crate) fn json_text(session: &Session) -> String {
     out += "\n  ]";
     let mut rest = Map::new();
     if session.has_settings || session.settings != Settings::default() {
-        rest.insert("settings".into(), with(settings(&session.settings), session.others.get("settings")));
+        rest.insert("settings".into(), with(settings_value(&session.settings), session.others.get("settings")));
     }
     if let Some(frame) = &session.frame {
         let corners = json!({"min": numbers(&frame.min), "max": numbers(&frame.max)});
@@ -68,7 +68,7 @@ fn entry(point: &ControlPoint, dim: usize) -> Value {
     Value::Object(entry)
 }
 
-fn settings(settings: &Settings) -> Value {
+pub(crate) fn settings_value(settings: &Settings) -> Value {
     let optional = |value: Option<f64>| value.map_or(Value::Null, number);
     let mut weights = Map::new();
     weights.insert("kind".into(), settings.weights.kind().into());

@@ -1,0 +1,107 @@
+"""The page of all experiments: claims first, then each figure with what it shows. One folder, relative links."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from html import escape
+
+from neuralmls_research.experiments.reproduce.items import Item
+from neuralmls_research.experiments.reproduce.report import NOT_REPRODUCED, REPRODUCED, UNTESTABLE, Claim, Report, Table
+
+MARKS = {REPRODUCED: "yes", NOT_REPRODUCED: "no", UNTESTABLE: "open"}
+STYLE = """
+body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 1120px; margin: 0 auto; padding: 24px; }
+h1 { font-size: 28px; margin: 8px 0; }
+h2 { font-size: 21px; margin: 56px 0 4px; padding-top: 12px; border-top: 1px solid #ddd; }
+nav a { margin-right: 14px; white-space: nowrap; }
+a { color: #0b5cad; }
+p { max-width: 860px; }
+.setting { color: #555; font-size: 14px; }
+figure { margin: 20px 0; }
+figure img { max-width: 100%; height: auto; display: block; }
+figcaption, caption { font-size: 14px; color: #333; text-align: left; max-width: 860px; padding: 6px 0; }
+.wide { overflow-x: auto; margin: 16px 0; }
+table { border-collapse: collapse; font-size: 14px; }
+th, td { padding: 5px 10px; border-bottom: 1px solid #e3e3e3; text-align: left; vertical-align: top; }
+.measures td + td, .measures th + th { text-align: right; font-variant-numeric: tabular-nums; }
+.measures td:first-child { white-space: nowrap; }
+.yes, .no, .open { display: inline-block; border-radius: 4px; padding: 1px 8px; font-size: 13px; white-space: nowrap; }
+.yes { background: #dcefe0; color: #14532d; }
+.no { background: #f9dedc; color: #7f1d1d; }
+.open { background: #ececec; color: #444; }
+.missing { background: #fff6dd; border-left: 4px solid #e0b437; padding: 8px 14px; max-width: 840px; }
+.missing ul { margin: 4px 0; padding-left: 20px; }
+"""
+
+
+def page(reports: Mapping[Item, Report], version: str) -> str:
+    """The HTML of the page."""
+    claims = [(item, claim) for item, report in reports.items() for claim in report.claims]
+    counts = [f"{sum(c.verdict == verdict for _, c in claims)} {verdict}" for verdict in MARKS]
+    missing = [(item, sentence) for item, report in reports.items() for sentence in report.missing]
+    rows = "".join(_claim_row(claim, item) for item, claim in claims)
+    sections = "".join(_section(item, report) for item, report in reports.items())
+    links = "".join(f'<a href="#{item.name}">{escape(item.title.split(":")[0])}</a> ' for item in reports)
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width">
+<title>NeuralMLS: the paper's experiments</title>
+<style>{STYLE}</style>
+</head>
+<body>
+<h1>The experiments of NeuralMLS, run again</h1>
+<p>Shechter, Hanocka, Metzer, Giryes, Cohen-Or, “NeuralMLS: Geometry-Aware Control Point Deformation”, Eurographics 2022
+(<a href="https://arxiv.org/abs/2201.01873">arXiv 2201.01873</a>). Every figure and number below was made by neuralmls
+{escape(version)} in one run of <code>neuralmls reproduce</code>; the numbers are in
+<a href="numbers.json">numbers.json</a> too. The claims are in our words. Lengths are in halves of the shape's longest
+side.</p>
+<nav>{links}</nav>
+{_missing(missing)}
+<h2 id="claims">What the paper says, and what came out</h2>
+<p>{", ".join(counts)}.</p>
+<div class="wide"><table>
+<thead><tr><th>claim</th><th>verdict</th><th>measured here</th><th>where</th></tr></thead>
+<tbody>{rows}</tbody>
+</table></div>
+{sections}
+</body>
+</html>
+"""
+
+
+def _missing(missing: list[tuple[Item, str]]) -> str:
+    if not missing:
+        return ""
+    lines = "".join(
+        f'<li><a href="#{item.name}">{item.name}</a>: {escape(sentence)}</li>' for item, sentence in missing
+    )
+    said = "What could not be run as in the paper; a verdict on a shape that stands in is one on that shape:"
+    return f'<div class="missing">{said}<ul>{lines}</ul></div>'
+
+
+def _claim_row(claim: Claim, item: Item) -> str:
+    verdict = f'<span class="{MARKS[claim.verdict]}">{claim.verdict}</span>'
+    where = f'<a href="#{item.name}">{item.name}</a>'
+    return f"<tr><td>{escape(claim.paper)}</td><td>{verdict}</td><td>{escape(claim.measured)}</td><td>{where}</td></tr>"
+
+
+def _section(item: Item, report: Report) -> str:
+    figures = "".join(
+        f'<figure><img src="{escape(picture.file)}" alt="{escape(picture.caption)}" loading="lazy">'
+        f"<figcaption>{escape(picture.caption)}</figcaption></figure>"
+        for picture in report.pictures
+    )
+    tables = "".join(map(_table, report.tables))
+    setting = report.setting[:1].upper() + report.setting[1:]
+    return f'<h2 id="{item.name}">{escape(item.title)}</h2><p class="setting">{escape(setting)}</p>{figures}{tables}'
+
+
+def _table(table: Table) -> str:
+    head = "".join(f"<th>{escape(title)}</th>" for title in table.head)
+    rows = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in table.rows)
+    return (
+        f'<div class="wide"><table class="measures"><caption>{escape(table.caption)}</caption>'
+        f"<thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>"
+    )

@@ -1,0 +1,70 @@
+"""Run experiments one after the other, and write their page and their numbers."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from neuralmls import __version__
+from neuralmls.plugin import write_atomically
+from neuralmls_research.experiments.reproduce.items import Item
+from neuralmls_research.experiments.reproduce.lab import Lab
+from neuralmls_research.experiments.reproduce.page import page
+from neuralmls_research.experiments.reproduce.report import Report
+
+PAGE, NUMBERS = "index.html", "numbers.json"
+
+
+def reproduce(
+    items: Sequence[Item],
+    lab: Lab,
+    around: Callable[[str], AbstractContextManager[object]] = lambda _: nullcontext(),
+) -> tuple[Path, dict[Item, Report]]:
+    """Run the items, and write pictures, page and numbers into the lab's folder.
+
+    Parameters
+    ----------
+    items : what to run, in this order
+    lab : where data is, and where pictures go; the folder is there
+    around : a context for each item, by its name: to time it, to show progress
+
+    Returns
+    -------
+    the page, and what each item gave
+
+    Raises
+    ------
+    NeuralMLSError
+        A library is missing, or a file of the data is broken.
+    FileError
+        A file cannot be written.
+    """
+    reports = {}
+    for item in items:
+        with around(item.name):
+            reports[item] = item.run(lab)
+    write_atomically(lab.folder / NUMBERS, (json.dumps(_numbers(reports), indent=1) + "\n").encode())
+    path = lab.folder / PAGE
+    write_atomically(path, page(reports, __version__).encode())
+    return path, reports
+
+
+def _numbers(reports: dict[Item, Report]) -> dict[str, Any]:
+    """All that was measured, for machines."""
+    return {
+        "neuralmls": __version__,
+        "items": {
+            item.name: {
+                "title": item.title,
+                "setting": report.setting,
+                "claims": [{**asdict(claim), "verdict": claim.verdict} for claim in report.claims],
+                "missing": report.missing,
+                "numbers": report.numbers,
+            }
+            for item, report in reports.items()
+        },
+    }
