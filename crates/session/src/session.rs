@@ -85,6 +85,8 @@ pub struct Read {
     pub session: Session,
     /// What was left out or passed over, a sentence each.
     pub notes: Vec<String>,
+    /// The places in the file of the landmarks that were left out, counted from 0: joining by order needs them.
+    pub left_out: Vec<usize>,
 }
 
 impl Session {

@@ -43,10 +43,8 @@ pub fn read(text: &str) -> Result<Read, Error> {
         return Err(Error::file(format!("expected {count} landmarks, as line 2 says, found {found}")));
     }
     if rest > 0 {
-        let s = if rest == 1 { " is" } else { "s are" };
-        landmarks
-            .notes
-            .push(format!("{rest} line{s} passed over after the {count} landmarks that line 2 announces"));
+        let lines = if rest == 1 { "1 line is".to_string() } else { format!("{rest} lines are") };
+        landmarks.notes.push(format!("{lines} passed over after the landmarks that line 2 announces"));
     }
     landmarks.finish()
 }

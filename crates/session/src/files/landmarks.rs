@@ -14,6 +14,8 @@ pub struct Landmarks {
     list: Vec<ControlPoint>,
     /// Why landmarks are left out, and which: in the order in which the reasons came up.
     left_out: Vec<(String, Vec<String>)>,
+    /// Their places in the file.
+    places: Vec<usize>,
     /// Further sentences about the file.
     pub notes: Vec<String>,
 }
@@ -21,7 +23,7 @@ pub struct Landmarks {
 impl Landmarks {
     /// None as yet, of `dim` coordinates each.
     pub fn new(dim: usize) -> Self {
-        Landmarks { dim, list: Vec::new(), left_out: Vec::new(), notes: Vec::new() }
+        Landmarks { dim, list: Vec::new(), left_out: Vec::new(), places: Vec::new(), notes: Vec::new() }
     }
 
     /// One more. Without a target it stays where it is.
@@ -45,6 +47,7 @@ impl Landmarks {
 
     /// One that was not placed.
     pub fn leave_out(&mut self, name: String, why: &str) {
+        self.places.push(self.count());
         match self.left_out.iter_mut().find(|(reason, _)| reason == why) {
             Some((_, names)) => names.push(name),
             None => self.left_out.push((why.to_string(), vec![name])),
@@ -53,12 +56,12 @@ impl Landmarks {
 
     /// How many there are, those that are left out among them.
     pub fn count(&self) -> usize {
-        self.list.len() + self.left_out.iter().map(|(_, names)| names.len()).sum::<usize>()
+        self.list.len() + self.places.len()
     }
 
     /// The session of those that were placed.
     pub fn finish(self) -> Result<Read, Error> {
-        let Landmarks { dim, list, left_out, notes } = self;
+        let Landmarks { dim, list, left_out, places, notes } = self;
         let left_out: Vec<String> = left_out
             .iter()
             .map(|(why, names)| {
@@ -75,7 +78,7 @@ impl Landmarks {
             return Err(Error::file(message));
         }
         let session = Session::new(ControlPoints::new(dim, list)?);
-        Ok(Read { session, notes: [left_out, notes].concat() })
+        Ok(Read { session, notes: [left_out, notes].concat(), left_out: places })
     }
 }
 

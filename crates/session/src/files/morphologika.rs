@@ -40,11 +40,10 @@ pub fn read(text: &str) -> Result<Read, Error> {
                 }
             }
             "[names]" => names.push(line),
-            "[rawpoints]" if line.starts_with('\'') => {
-                if points.is_empty() {
-                    name = Some(line.trim_start_matches('\'').trim().to_string());
-                }
+            "[rawpoints]" if line.starts_with('\'') && points.is_empty() => {
+                name = Some(line.trim_start_matches('\'').trim().to_string());
             }
+            "[rawpoints]" if line.starts_with('\'') => {}
             "[rawpoints]" => {
                 if count.is_some_and(|count| points.len() >= count) {
                     continue;

@@ -13,12 +13,7 @@ const MOST_NODES: u32 = 1_000_000;
 /// The points that are active.
 pub fn read(text: &str) -> Result<Read, Error> {
     let options = ParsingOptions { allow_dtd: true, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(text, options).map_err(|error| {
-        let at = error.pos();
-        let words = error.to_string();
-        let words = words.split(" at ").next().unwrap_or_default();
-        Error::file(format!("line {}, column {}: not XML: {}", at.row, at.col, shown(words)))
-    })?;
+    let document = Document::parse_with_options(text, options).map_err(|error| sentence(&error))?;
     let root = document.root_element();
     if root.tag_name().name() != "PickedPoints" {
         let found = shown(root.tag_name().name());
@@ -31,6 +26,15 @@ pub fn read(text: &str) -> Result<Read, Error> {
         push(&mut landmarks, point)?;
     }
     landmarks.finish()
+}
+
+fn sentence(error: &roxmltree::Error) -> Error {
+    if matches!(error, roxmltree::Error::UnexpectedEndOfStream) {
+        return Error::file("not XML: the file ends before its elements do");
+    }
+    let (at, words) = (error.pos(), error.to_string());
+    let words = shown(words.split(" at ").next().unwrap_or_default());
+    Error::file(format!("line {}, column {}: not XML: {words}", at.row, at.col))
 }
 
 fn push(landmarks: &mut Landmarks, point: Node<'_, '_>) -> Result<(), Error> {

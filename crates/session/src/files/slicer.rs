@@ -7,12 +7,15 @@ use serde_json::{Map, Value};
 use super::json::{found, text, vector, Document};
 use super::landmarks::{name_of, numbers, Landmarks};
 use super::table::cells;
+use crate::control_points::ControlPoints;
 use crate::error::Error;
 use crate::session::{Read, Session};
 use crate::text::shown;
 
 /// Where a session keeps the coordinate system of its file.
 const SYSTEM: &str = "coordinate_system";
+const TAKEN_AS_RAS: &str =
+    "the landmarks are in RAS and taken as they are; meshes that Slicer writes are in LPS, with x and y negated";
 
 /// Whether it is a `.mrk.json`.
 pub fn is_markups(document: &Value) -> bool {
@@ -149,9 +152,7 @@ pub fn read_fiducials(text: &str) -> Result<Read, Error> {
 
 fn finish(mut landmarks: Landmarks, system: Option<&str>) -> Result<Read, Error> {
     if system == Some("RAS") {
-        landmarks.notes.push(
-            "the landmarks are in RAS and taken as they are; meshes that Slicer writes are in LPS, with x and y negated".into(),
-        );
+        landmarks.notes.push(TAKEN_AS_RAS.into());
     }
     let mut read = landmarks.finish()?;
     if let Some(system) = system {
@@ -160,20 +161,27 @@ fn finish(mut landmarks: Landmarks, system: Option<&str>) -> Result<Read, Error>
     Ok(read)
 }
 
-/// What takes the second session's coordinates to the first's system, where both say in which they are.
-pub fn flip(source: &Session, targets: &Session, notes: &mut Vec<String>) -> [f64; 3] {
+/// Takes the second file's positions to the first's system, where both say in which they are.
+pub fn flip(source: &Session, targets: &mut Read) -> Result<(), Error> {
     let system = |session: &Session| match session.others.get(SYSTEM).and_then(Value::as_str) {
         Some("LPS") => Some("LPS"),
         Some("RAS") => Some("RAS"),
         _ => None,
     };
-    match (system(source), system(targets)) {
-        (Some(here), Some(there)) if here != there && source.points.dim() == 3 => {
-            notes.push(format!(
-                "the targets are in {there}: x and y are negated, as the sources are in {here}"
-            ));
-            [-1.0, -1.0, 1.0]
-        }
-        _ => [1.0; 3],
+    let (Some(here), Some(there)) = (system(source), system(&targets.session)) else { return Ok(()) };
+    if here == there || targets.session.points.dim() != 3 {
+        return Ok(());
     }
+    let mut list = targets.session.points.to_vec();
+    for point in &mut list {
+        for place in [&mut point.position, &mut point.target] {
+            place[..2].iter_mut().for_each(|c| *c = -*c);
+        }
+    }
+    targets.session.points = ControlPoints::new(3, list)?;
+    targets.notes.retain(|note| note != TAKEN_AS_RAS);
+    targets
+        .notes
+        .push(format!("the targets are in {there}: x and y are negated, as the sources are in {here}"));
+    Ok(())
 }

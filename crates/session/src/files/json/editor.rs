@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value};
 
-use super::session::keep;
-use super::settings::{object, one_of, share, shared, weights, Keys};
+use super::session::{keep, passed_over};
+use super::settings::{object, one_of, share, shared, weights, Keys, PARAMETERS};
 use super::style::{found, line};
 use crate::control_points::{ControlPoint, ControlPoints};
 use crate::error::Error;
@@ -29,7 +29,7 @@ pub fn session_of(
     let found = editor.shift_remove("settings").unwrap_or(Value::Object(Map::new()));
     let found = object(&found, "editor.settings")?;
     if !found.is_empty() {
-        let (settings, mirror, rest) = read(found).map_err(|error| error.at("editor.settings"))?;
+        let (settings, mirror, rest) = read(found, notes).map_err(|error| error.at("editor.settings"))?;
         session.settings = settings;
         session.has_settings = true;
         if let Some(mirror) = mirror {
@@ -43,7 +43,7 @@ pub fn session_of(
     Ok(session)
 }
 
-fn read(mut keys: Keys) -> Result<(Settings, Option<&'static str>, Keys), Error> {
+fn read(mut keys: Keys, notes: &mut Vec<String>) -> Result<(Settings, Option<&'static str>, Keys), Error> {
     let mut settings = Settings::default();
     shared(&mut settings, &mut keys)?;
     if let Some(found) = keys.shift_remove("adherence") {
@@ -58,14 +58,19 @@ fn read(mut keys: Keys) -> Result<(Settings, Option<&'static str>, Keys), Error>
     // The parameters of the kind that was not chosen were not used.
     let [neural, classic] = ["neural", "classic"].map(|kind| keys.shift_remove(kind));
     let (found, kind) = if kind == "neural" { (neural, "neural") } else { (classic, "inverse-distance") };
-    if let Some(found) = found {
-        let mut parameters = object(&found, kind)?;
-        settings.weights = weights(kind, &mut parameters)?;
-        if !parameters.is_empty() {
-            keys.insert("weights".into(), parameters.into());
-        }
-    } else {
-        settings.weights = weights(kind, &mut Keys::new())?;
+    for key in ["weights", "handles"] {
+        pass_over(key, &mut keys, notes);
+    }
+    let mut parameters = found.map_or(Ok(Keys::new()), |found| object(&found, kind))?;
+    let known = if kind == "neural" { &["width", "steps", "seed"][..] } else { &["alpha", "epsilon"] };
+    for key in
+        PARAMETERS.iter().flat_map(|(_, names)| *names).chain(&["kind"]).filter(|key| !known.contains(key))
+    {
+        pass_over(key, &mut parameters, notes);
+    }
+    settings.weights = weights(kind, &mut parameters)?;
+    if !parameters.is_empty() {
+        keys.insert("weights".into(), parameters.into());
     }
     settings.check()?;
     let mirror = match keys.shift_remove("mirror") {
@@ -73,6 +78,13 @@ fn read(mut keys: Keys) -> Result<(Settings, Option<&'static str>, Keys), Error>
         Some(found) => Some(one_of("mirror", &found, &["x", "y", "z"])?),
     };
     Ok((settings, mirror, keys))
+}
+
+/// Leaves out another program's key that would mean something when the file is written again.
+fn pass_over(key: &str, keys: &mut Keys, notes: &mut Vec<String>) {
+    if keys.shift_remove(key).is_some() {
+        notes.push(passed_over(key));
+    }
 }
 
 /// Twins that mirror each other: the second is the mirror image of the first.

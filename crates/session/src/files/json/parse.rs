@@ -55,6 +55,8 @@ fn sentence(text: &str, error: &serde_json::Error) -> Error {
         }
         // Whether this is not JSON, one may argue; what it says is not known.
         twice if twice.starts_with("the key ") => twice.to_string(),
+        // The library's word for true, false and null.
+        "expected ident" => "not JSON: expected value".to_string(),
         words => format!("not JSON: {words}"),
     };
     Error::file(format!("line {line}, column {column}: {words}"))
@@ -84,6 +86,18 @@ impl<'de> Visitor<'de> for Unique {
         Ok(Unique)
     }
 
+    fn visit_i64<E>(self, _: i64) -> Result<Unique, E> {
+        Ok(Unique)
+    }
+
+    fn visit_u64<E>(self, _: u64) -> Result<Unique, E> {
+        Ok(Unique)
+    }
+
+    fn visit_f64<E>(self, _: f64) -> Result<Unique, E> {
+        Ok(Unique)
+    }
+
     fn visit_str<E>(self, _: &str) -> Result<Unique, E> {
         Ok(Unique)
     }
@@ -93,7 +107,7 @@ impl<'de> Visitor<'de> for Unique {
         Ok(Unique)
     }
 
-    /// Numbers too are maps here, of one key.
+    /// Numbers of many digits too are maps here, of one key.
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Unique, A::Error> {
         let mut keys = HashSet::new();
         while let Some(key) = map.next_key::<String>()? {

@@ -63,7 +63,7 @@ pub(crate) fn session_of(document: Document) -> Result<Read, Error> {
         return Err(error);
     }
     session.others.extend(keys);
-    Ok(Read { session, notes })
+    Ok(Read { session, notes, left_out: Vec::new() })
 }
 
 fn entries(list: &[Value], version: u8, notes: &mut Vec<String>) -> Result<Vec<ControlPoint>, Error> {
@@ -87,7 +87,7 @@ fn entries(list: &[Value], version: u8, notes: &mut Vec<String>) -> Result<Vec<C
     Ok(points)
 }
 
-fn passed_over(key: &str) -> String {
+pub(super) fn passed_over(key: &str) -> String {
     format!("the key \"{key}\" means nothing in a file of version 1: it is passed over")
 }
 

@@ -10,7 +10,7 @@ use crate::Transform;
 pub type Keys = Map<String, Value>;
 
 /// Which parameters belong to which kind of weights.
-const PARAMETERS: [(&str, &[&str]); 3] = [
+pub const PARAMETERS: [(&str, &[&str]); 3] = [
     ("neural", &["width", "steps", "seed", "rate", "fourier_sigma"]),
     ("shape-aware", &["seed"]),
     ("inverse-distance", &["alpha", "epsilon"]),

@@ -96,9 +96,9 @@ impl Columns {
         if target {
             titles.extend(AXES[..dim].iter().map(|axis| format!("target_{axis}")));
         }
-        let used =
-            if bigwarp { "name,active,".to_string() + &titles[2..].join(",") } else { titles.join(",") };
-        notes.push(format!("there is no header line: the columns are taken for {used}"));
+        if !bigwarp {
+            notes.push(format!("there is no header line: the columns are taken for {}", titles.join(",")));
+        }
         Ok(Columns {
             titles,
             whose: "first line",

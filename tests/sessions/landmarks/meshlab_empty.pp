@@ -1,0 +1,7 @@
+<!DOCTYPE PickedPoints>
+<PickedPoints>
+ <DocumentData>
+  <DateTime time="12:00:00" date="2026-01-01"/>
+  <DataFileName name="bar.stl"/>
+ </DocumentData>
+</PickedPoints>

@@ -1,0 +1,2 @@
+<PickedPoints>
+ <point x="0" y="0" z="0"

@@ -1,0 +1,2 @@
+MNI Tag Point File
+Volumes = 2;

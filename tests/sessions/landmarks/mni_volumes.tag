@@ -1,0 +1,4 @@
+MNI Tag Point File
+Volumes = 3;
+Points =
+ 0 0 0;
