@@ -121,7 +121,7 @@ def test_the_order_of_the_control_points_does_not_matter():
 
 
 def test_in_the_plane_and_on_a_line():
-    corner = nm.deform([[1.0, 0.0]], [[0.0, 0.0]], [[0.0, 0.0]], rotations=[nm.Orientation(degrees=90).matrix])
+    corner = nm.deform([[1.0, 0.0]], [[0.0, 0.0]], [[0.0, 0.0]], rotations=[nm.Orientation(degrees=90).rotation(2)])
     assert np.abs(corner - [[0, 1]]).max() < 1e-8
     line = nm.deform([[3.0]], [[1.0]], [[1.0]], scales=[2.0], transform="similarity")
     assert np.abs(line - [[5]]).max() < 1e-8

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -63,30 +66,97 @@ def test_every_control_point_owns_its_place(neural):
 
 
 def test_saved_weights_are_loaded_as_they_were(neural, tmp_path):
-    neural.save(tmp_path / "chair.npz")
-    loaded = nm.NeuralWeights.load(tmp_path / "chair.npz")
+    neural.save(tmp_path / "chair.weights")
+    loaded = nm.NeuralWeights.load(tmp_path / "chair.weights")
     assert np.array_equal(loaded.logits(X), neural.logits(X))
     assert np.array_equal(loaded.control_points, P)
     assert (loaded.loss, loaded.steps) == (neural.loss, neural.steps)
     fourier = nm.NeuralWeights.fit(P, width=32, fourier_sigma=0.5)
-    fourier.save(tmp_path / "fourier.npz")
-    assert np.array_equal(nm.NeuralWeights.load(tmp_path / "fourier.npz").logits(X), fourier.logits(X))
+    fourier.save(tmp_path / "fourier.weights")
+    assert np.array_equal(nm.NeuralWeights.load(tmp_path / "fourier.weights").logits(X), fourier.logits(X))
+    classic = nm.InverseDistanceWeights(P, alpha=2, epsilon=0.1)
+    classic.save(tmp_path / "classic.weights")
+    found = nm.InverseDistanceWeights.load(tmp_path / "classic.weights")
+    assert (found.alpha, found.epsilon) == (2, 0.1)
+    assert np.array_equal(found.logits(X), classic.logits(X))
+    with pytest.raises(nm.FileError, match="expected neural weights, found inverse-distance ones"):
+        nm.NeuralWeights.load(tmp_path / "classic.weights")
+
+
+def test_saved_weights_are_safetensors_that_others_read(neural, tmp_path):
+    numpy = pytest.importorskip("safetensors.numpy")
+    neural.save(tmp_path / "chair.weights")
+    arrays = numpy.load_file(tmp_path / "chair.weights")
+    assert {name: array.shape for name, array in arrays.items() if name.startswith("weight")} == {
+        "weight0": (64, 3),
+        "weight1": (64, 64),
+        "weight2": (4, 64),
+    }
+    assert np.array_equal(arrays["control_points"], P)
+
+
+@pytest.fixture
+def changed(neural, tmp_path):
+    """Save the weights with some arrays replaced."""
+    numpy = pytest.importorskip("safetensors.numpy")
+    neural.save(tmp_path / "whole")
+    arrays = numpy.load_file(tmp_path / "whole")
+    metadata = {"format": "neuralmls-map", "version": "1", "weights": "neural"}
+
+    def save(metadata=metadata, **others):
+        numpy.save_file({**arrays, **others}, tmp_path / "changed", metadata=metadata)
+        return tmp_path / "changed"
+
+    return save
 
 
 def test_other_files_are_refused_in_a_sentence(neural, tmp_path):
-    with pytest.raises(nm.FileError, match=r"none\.npz: cannot read: No such file"):
-        nm.NeuralWeights.load(tmp_path / "none.npz")
-    (tmp_path / "text.npz").write_text("v 0 0 0\n")
-    np.savez(tmp_path / "other.npz", a=np.zeros(3))
-    neural.save(tmp_path / "whole.npz")
-    whole = (tmp_path / "whole.npz").read_bytes()
-    (tmp_path / "half.npz").write_bytes(whole[: len(whole) // 2])
-    arrays = dict(np.load(tmp_path / "whole.npz"))
-    np.savez(tmp_path / "unfit.npz", **{**arrays, "bias1": np.zeros(3, np.float32)})
-    np.savez(tmp_path / "fewer.npz", **{**arrays, "control_points": P[:2]})
-    for name in ("text", "other", "half", "unfit", "fewer"):
-        with pytest.raises(nm.FileError, match=f"{name}.npz: this is no network"):
-            nm.NeuralWeights.load(tmp_path / f"{name}.npz")
+    with pytest.raises(nm.FileError, match=r"none: cannot read: No such file"):
+        nm.NeuralWeights.load(tmp_path / "none")
+    (tmp_path / "text").write_text("v 0 0 0\n")
+    np.savez(tmp_path / "arrays.npz", a=np.zeros(3))
+    neural.save(tmp_path / "whole")
+    whole = (tmp_path / "whole").read_bytes()
+    (tmp_path / "half").write_bytes(whole[: len(whole) // 2])
+    (tmp_path / "bomb").write_bytes((2**62).to_bytes(8, "little") + b"{}")
+    for name in ("text", "arrays.npz", "half", "bomb"):
+        with pytest.raises(nm.FileError, match=f"{name}: this is no map that was saved by NeuralMLS") as raised:
+            nm.NeuralWeights.load(tmp_path / name)
+        assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("arrays", "words"),
+    [
+        ({"bias1": np.zeros(3, np.float32)}, "weight1: expected F32"),
+        ({"control_points": P[:2]}, "weight2: expected F32"),
+        ({"weight0": np.zeros((3, 64), np.float32)}, r"weight0: expected F32 \[64, 3\], found F32 \[3, 64\]"),
+        ({"weight0": np.zeros((64, 3), np.float64)}, r"weight0: expected F32 \[64, 3\], found F64 \[64, 3\]"),
+        ({"weight2": np.full((4, 64), np.nan, np.float32)}, "layer 2: expected finite numbers"),
+        ({"half": np.zeros(1)}, "expected a finite frame with a size above 0"),
+        ({"half": np.ones((1, 1))}, "half: expected F64"),
+    ],
+)
+def test_arrays_that_do_not_fit_are_refused_by_name(changed, arrays, words):
+    with pytest.raises(nm.FileError, match=f"changed: this is no map that was saved by NeuralMLS: {words}"):
+        nm.NeuralWeights.load(changed(**arrays))
+
+
+def test_files_of_another_format_or_version_are_refused(changed):
+    with pytest.raises(nm.FileError, match="no format neuralmls-map"):
+        nm.NeuralWeights.load(changed(metadata={}))
+    with pytest.raises(nm.FileError, match="version: expected 1, found 2"):
+        nm.NeuralWeights.load(changed(metadata={"format": "neuralmls-map", "version": "2"}))
+
+
+def test_weights_and_what_is_bound_to_them_can_be_pickled_and_copied(neural):
+    q = P + 0.1
+    for weights in (neural, nm.InverseDistanceWeights(P)):
+        deformer, exact = nm.Deformer(X, weights), nm.ExactHandles(weights)
+        for again in (pickle.loads(pickle.dumps(deformer)), copy.deepcopy(deformer)):
+            assert np.array_equal(again.deform(q[::-1]), deformer.deform(q[::-1]))
+        assert np.array_equal(pickle.loads(pickle.dumps(weights)).logits(X), weights.logits(X))
+        assert np.array_equal(pickle.loads(pickle.dumps(exact)).aim(q).targets, exact.aim(q).targets)
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from neuralmls.arrays import as_points
@@ -102,13 +103,11 @@ def fitted(
 
 def _orientations(rotations: Rotations, scales: Scales, count: int, dimension: int) -> list[Orientation | None] | None:
     """Scaled rotation matrices as what control points carry."""
-    import numpy as np
-
     scaled = as_orientations(rotations, scales, count, dimension)
     if scaled is None:
         return None
-    sizes = np.abs(np.linalg.det(scaled)) ** (1 / dimension)
-    return [
-        None if np.isnan(size) else Orientation.of(np.ascontiguousarray(matrix / size), size)
-        for matrix, size in zip(scaled, sizes, strict=True)
-    ]
+    oriented: list[Orientation | None] = [None] * count
+    for i in np.flatnonzero(~np.isnan(scaled[:, 0, 0])):
+        size = abs(np.linalg.det(scaled[i])) ** (1 / dimension)
+        oriented[i] = Orientation.of(np.ascontiguousarray(scaled[i] / size), size)
+    return oriented

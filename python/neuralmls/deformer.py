@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Literal, TypeAlias, overload
+from typing import Any, Literal, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -71,7 +71,7 @@ class Deformer:
                 f"weights: expected a weight function, with control_points and logits, found {weights!r}"
             )
         if not isinstance(transform, str):
-            raise ArgumentError(f"transform: expected 'rigid', 'similarity' or 'affine', found {transform!r}")
+            raise ArgumentError(f"transform: expected rigid or similarity or affine, found {transform!r}")
         p = as_points("control_points", weights.control_points)
         points = as_points("x", x, p.shape[1])
         self._weights, self._transform = weights, transform
@@ -85,6 +85,10 @@ class Deformer:
         if logits.shape != (len(points), len(p)):
             raise ArgumentError(f"logits: expected shape {(len(points), len(p))}, found {logits.shape}")
         self._core = _core.Deformer.of_logits(points, p, logits, transform)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        state = (self._core.points, self._p, self._core.logits, self._transform, self._dtype.str, self._weights)
+        return _restored, state
 
     @cached_property
     def _handles(self) -> ExactHandles:
@@ -206,3 +210,19 @@ class Deformer:
         positions, maps = self._core.deform(q, orientations, t, return_maps, out, progress)
         y: Floats = positions if out is not None else positions.astype(self._dtype, copy=False)
         return (y, maps) if maps is not None else y
+
+
+def _restored(
+    x: NDArray[np.float64],
+    p: NDArray[np.float64],
+    logits: NDArray[np.float32],
+    transform: Transform,
+    dtype: str,
+    weights: Weights | HasLogits,
+) -> Deformer:
+    """The deformer of the same points, whose logits are not computed again."""
+    deformer = Deformer.__new__(Deformer)
+    deformer._core = _core.Deformer.of_logits(x, p, logits, transform)
+    deformer._p, deformer._weights, deformer._transform = p, weights, transform
+    deformer._count, deformer._dtype = len(x), np.dtype(dtype)
+    return deformer

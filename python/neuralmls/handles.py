@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -103,6 +103,10 @@ class ExactHandles:
         self._p = as_points("weights.control_points", weights.control_points)
         logits = np.ascontiguousarray(weights.logits(self._p), np.float32)
         self._core = _core.Handles(self._p, logits, transform)
+        self._weights, self._transform = weights, transform
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (self._weights, self._transform)
 
     def aim(
         self,
@@ -222,3 +226,7 @@ def as_adherence(value: ArrayLike, count: int) -> list[float]:
     if len(listed) != count:
         raise ArgumentError(f"adherence: expected one number, or {count} of them, found {len(listed)}")
     return listed
+
+
+def _restored(weights: Weights | HasLogits, transform: Transform) -> ExactHandles:
+    return ExactHandles(weights, transform=transform)

@@ -71,7 +71,12 @@ class Session:
     ) -> None:
         if not isinstance(points, ControlPoints):
             raise ArgumentError(f"points: expected ControlPoints, found {points!r}")
-        changes = _settings(weights, parameters, transform=transform, temperature=temperature, handles=handles)
+        said = {"weights": weights, "transform": transform, "temperature": temperature, "handles": handles}
+        for name, value in said.items():
+            if value is None:
+                raise ArgumentError(f"{name}: expected a setting, found None")
+        del said["weights"]
+        changes = _settings(weights, parameters, **said)
         self._core = _core.Session(points._core).with_settings(changes)
         self._notes: tuple[str, ...] = ()
         if frame is not None:

@@ -13,7 +13,26 @@ fn raised(error: Error) -> PyErr {
     from_session(error, None)
 }
 
-/// How a control point is oriented.
+/// How a control point is oriented: turned about an axis, by an angle, and scaled.
+///
+/// Parameters
+/// ----------
+/// axis : 3 floats, not all 0, of any length
+///     Seen from its tip, positive angles turn counterclockwise. In the plane (0, 0, 1).
+/// degrees : float
+///     The angle; on a line 0.
+/// scale : float > 0
+///     How much larger the surroundings become. Rigid deformations leave it away.
+///
+/// Raises
+/// ------
+/// ArgumentError
+///     A number is out of its range.
+///
+/// Examples
+/// --------
+/// >>> Orientation((0, 0, 1), 90).matrix.round(6).tolist()
+/// [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
 #[pyclass(frozen, eq, from_py_object, module = "neuralmls._core")]
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Orientation(pub neuralmls_session::Orientation);
@@ -26,6 +45,7 @@ impl Orientation {
         neuralmls_session::Orientation::new(axis, degrees, scale).map(Orientation).map_err(raised)
     }
 
+    /// The orientation of a rotation matrix (d, d).
     #[staticmethod]
     #[pyo3(signature = (matrix, scale=1.0))]
     fn of(matrix: PyReadonlyArray2<'_, f64>, scale: f64) -> PyResult<Orientation> {
@@ -50,11 +70,18 @@ impl Orientation {
         self.0.scale
     }
 
+    /// The rotation without its scale, (3, 3).
     #[getter]
     fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         table(py, self.0.matrix().to_vec(), 3)
     }
 
+    /// The rotation without its scale in `dimension` coordinates, (d, d).
+    fn rotation<'py>(&self, py: Python<'py>, dimension: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        table(py, self.0.rotation(dimension), dimension)
+    }
+
+    /// Oriented so, and then further.
     fn then(&self, further: &Orientation) -> Orientation {
         Orientation(self.0.then(&further.0))
     }

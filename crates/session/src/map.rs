@@ -54,7 +54,7 @@ impl Session {
                 Weights::InverseDistance(InverseDistance::new(&p, dim, frame, alpha, epsilon)?)
             }
             WeightsSettings::ShapeAware { .. } => {
-                return Err(Error::argument("weights: shape-aware weights are fitted to a shape, not to a box"));
+                return Err(Error::argument("shape-aware weights are not fitted here yet: `neuralmls deform` and the Python package take this session"));
             }
         };
         Map::of(session, weights)

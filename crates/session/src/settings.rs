@@ -123,7 +123,7 @@ pub fn transform(name: &str) -> Result<Transform, Error> {
     let found = TRANSFORMS.iter().find(|(known, _)| *known == name);
     found.map(|(_, transform)| *transform).ok_or_else(|| {
         let found = crate::text::quoted(name);
-        Error::argument(format!("transform: expected 'rigid', 'similarity' or 'affine', found {found}"))
+        Error::argument(format!("transform: expected rigid or similarity or affine, found {found}"))
     })
 }
 

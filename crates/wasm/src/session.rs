@@ -65,6 +65,12 @@ impl Session {
     }
 }
 
+/// What shaders, which have arithmetic of their own, take from the core: JSON.
+#[wasm_bindgen]
+pub fn constants() -> String {
+    format!("{{\"anchor_weight\": {:e}}}", neuralmls_core::ANCHOR_WEIGHT)
+}
+
 /// The settings that hold where nothing is said, as a session file has them.
 #[wasm_bindgen(js_name = defaultSettings)]
 pub fn default_settings() -> String {
