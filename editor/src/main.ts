@@ -3,12 +3,12 @@
 import { createElement, render } from "preact";
 import { App, fetchSamples } from "./app/app.ts";
 import type { Display } from "./app/display.ts";
-import { INITIAL_STATE, type Theme } from "./app/state.ts";
+import { initialState, type Theme } from "./app/state.ts";
 import { Store } from "./app/store.ts";
 import { History } from "./commands/index.ts";
 import { morphTarget } from "./exports/morphTarget.ts";
 import { page } from "./exports/page.ts";
-import { EMPTY_SESSION } from "./model/session.ts";
+import { emptySession } from "./model/session.ts";
 import { listenToKeys } from "./panels/actions.ts";
 import { listenToDrops } from "./panels/drops.ts";
 import { Root } from "./panels/Root.tsx";
@@ -20,16 +20,21 @@ import { coreBytes, createCore } from "./worker/client.ts";
 
 const THEME_KEY = "neuralmls-theme";
 
-const history = new History(EMPTY_SESSION);
-const store = new Store({ ...INITIAL_STATE, theme: (localStorage.getItem(THEME_KEY) ?? "system") as Theme });
+const root = document.getElementById("app") as HTMLElement;
+const core = createCore();
+const { defaults, constants } = await core.rules().catch((error: Error) => {
+  root.textContent = `${error.message}.`;
+  throw error;
+});
+const history = new History(emptySession(defaults));
+const store = new Store(initialState(defaults, (localStorage.getItem(THEME_KEY) ?? "system") as Theme));
 const host = document.createElement("div");
 host.className = "canvas-host";
-const root = document.getElementById("app") as HTMLElement;
 const viewport = startViewport();
 
 function startViewport(): Viewport {
   try {
-    return new Viewport(host, history, store.value.view);
+    return new Viewport(host, history, store.value.view, constants);
   } catch (error) {
     root.textContent = "The editor needs WebGL 2, which this browser does not offer here: another one, or another graphics driver, may.";
     throw error;
@@ -55,12 +60,11 @@ const display: Display = {
   async page(title) {
     const { drawn, bound } = viewport;
     if (!drawn || !bound) throw new Error("There are no control points yet.");
-    return page(title, drawn, viewport.box, store.value.shape?.opened.dim ?? 3, bound, history.session, coreBytes);
+    return page(title, drawn, viewport.box, store.value.shape?.opened.dim ?? 3, bound, history.session, await coreBytes(), constants);
   },
 };
 
-const core = createCore();
-const app = new App(core, new Autosave(), history, store, display);
+const app = new App(core, defaults, new Autosave(), history, store, display);
 store.subscribe(({ theme }, before) => {
   if (theme !== before.theme) localStorage.setItem(THEME_KEY, theme);
 });

@@ -35,7 +35,7 @@ export class Advice {
     const { session } = this.#history;
     const { fit, advice } = this.#store.value;
     if (this.#history.inGesture || fit.status === "fitting") return; // asked again afterwards
-    const bound = fit.status === "ready" && session.points.some(isMoved) ? this.#weights.motion(session) : null;
+    const bound = fit.status === "ready" && session.points.some(isMoved) ? this.#weights.document(session) : null;
     if (!bound) {
       if (advice.length > 0) this.#store.set({ advice: [] });
       return;
@@ -44,7 +44,7 @@ export class Advice {
       const found = await this.#core.advise(bound);
       if (session !== this.#history.session || fit !== this.#store.value.fit) return; // asked anew already
       const ids = session.points.map(({ id }) => id);
-      this.#store.set({ advice: found.map((one) => ({ ...one, ids: one.near.map((i) => ids[i]) })) });
+      this.#store.set({ advice: found.map((one) => ({ ...one, ids: one.control_points.map((i) => ids[i]) })) });
     } catch {
       // A newer fit has ended the worker; it is asked again when that is done. Advice is not worth an error.
     }

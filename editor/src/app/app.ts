@@ -1,16 +1,17 @@
 /** What a person can do besides editing: open, save, place control points, take up earlier work. */
 
 import { addPoints, type Command, type History, load, placeAnew } from "../commands/index.ts";
-import { areFarAway, formatSession, parseSession } from "../model/controlPointFile.ts";
-import { EMPTY_SESSION, isMoved, type Session } from "../model/session.ts";
+import { fromDocument, toDocument } from "../model/document.ts";
+import { emptySession, isMoved } from "../model/session.ts";
 import { pointAt } from "../model/vec3.ts";
 import { DEFAULT_VIEW, type View } from "../model/view.ts";
 import type { Autosave } from "../storage/autosave.ts";
-import type { Core, Files, OnProgress, Opened } from "../worker/protocol.ts";
+import type { Core, Files, OnProgress, Opened, Settings } from "../worker/protocol.ts";
 import { servedSession } from "../worker/served.ts";
 import { Advice } from "./advice.ts";
 import type { Display } from "./display.ts";
 import { download, extensionOf, readAll, sort, stemOf } from "./files.ts";
+import { asSentence } from "./sentence.ts";
 import type { Sample, State, Toast } from "./state.ts";
 import type { Store } from "./store.ts";
 import { isAbort, Weights } from "./weights.ts";
@@ -33,6 +34,8 @@ export class App {
   readonly store: Store<State>;
   readonly display: Display;
   readonly #core: Core;
+  /** The settings that hold where nothing is said. */
+  readonly #defaults: Settings;
   readonly #autosave: Autosave;
   readonly #weights: Weights;
   #toasts = 0;
@@ -40,8 +43,8 @@ export class App {
   #autosaving: ReturnType<typeof setTimeout> | undefined;
   #opening: AbortController | undefined;
 
-  constructor(core: Core, autosave: Autosave, history: History, store: Store<State>, display: Display) {
-    [this.#core, this.#autosave, this.history, this.store, this.display] = [core, autosave, history, store, display];
+  constructor(core: Core, defaults: Settings, autosave: Autosave, history: History, store: Store<State>, display: Display) {
+    [this.#core, this.#defaults, this.#autosave, this.history, this.store, this.display] = [core, defaults, autosave, history, store, display];
     this.#weights = new Weights(core, history, store, (slot, weights) => display.setWeights(slot, weights));
     this.#weights.showFrame = (positions, maps) => display.showFrame(positions, maps);
     new Advice(core, history, store, this.#weights);
@@ -71,7 +74,7 @@ export class App {
       const served = await servedSession();
       if (!served) return this.offerRecovery();
       await this.#openShape(served.files, served.name);
-      if (served.points) this.#openPoints(served.points.name, served.points.text);
+      if (served.points) await this.#openPoints(new Map([served.points]), [served.points[0]]);
       this.display.focus("all");
     });
   }
@@ -86,10 +89,10 @@ export class App {
   async openBytes(files: Files): Promise<void> {
     const { shape, points } = sort(files);
     if (shape !== undefined) await this.#openShape(files, shape);
-    else if (points === undefined) {
-      throw new Error(`${[...files.keys()].join(", ")}: expected a shape (OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV, NPY) or control points (JSON, CSV)`);
+    else if (points.length === 0) {
+      throw new Error(`${[...files.keys()].join(", ")}: expected a shape (OBJ, PLY, OFF, STL, glTF, GLB, XYZ, CSV, NPY) or control points (JSON, CSV, landmarks)`);
     }
-    if (points !== undefined) this.#openPoints(points, textOf(points, files.get(points) as Uint8Array));
+    if (points.length > 0) await this.#openPoints(files, points);
     if (shape !== undefined) this.display.focus("all");
   }
 
@@ -108,26 +111,20 @@ export class App {
       const { hasAppearance } = await this.display.showShape(opened, files);
       this.store.set({ shape: { opened, files, hasAppearance }, recovery: null, toasts: [] });
       this.setView({ ...DEFAULT_VIEW, adding: this.store.value.view.adding });
-      this.history.reset(EMPTY_SESSION);
+      this.history.reset(emptySession(this.#defaults));
       for (const warning of opened.warnings) this.toast("warning", warning);
       await this.#keep(() => this.#autosave.saveShape(name, files));
     });
   }
 
-  #openPoints(name: string, text: string): void {
-    const { shape } = this.store.value;
-    if (!shape) throw new Error(`${name}: these are control points; open the shape that they belong to first`);
-    let session: Session;
-    try {
-      session = parseSession(text, shape.opened.dim);
-    } catch (error) {
-      throw new Error(`${name}: ${messageOf(error)}`);
-    }
-    this.do(load(session));
-    const { centre, half } = shape.opened.frame;
-    if (areFarAway(session, centre, half)) {
-      this.toast("warning", `${name}: some control points are far away from the shape; are they another one's?`);
-    }
+  async #openPoints(files: Files, names: readonly string[]): Promise<void> {
+    const called = names.join(" and ");
+    if (!this.store.value.shape) throw new Error(`${called}: these are control points; open the shape that they belong to first`);
+    if (names.length > 2) throw new Error(`${called}: expected one file of control points, or two: where they are at rest, and where they go`);
+    const { document, notes } = await this.#core.readSession(files, names);
+    this.do(load(fromDocument(document, this.#defaults)));
+    if (names.length === 2) this.toast("done", `${names[0]} says where control points are at rest, ${names[1]} where they go`);
+    if (notes.length > 0) this.toast("warning", `${called}: ${notes.map(asSentence).join(" ")}`);
   }
 
   // Control points
@@ -153,21 +150,23 @@ export class App {
       await this.#weights.settled();
       const { session } = this.history;
       if (session.points.length > 0) this.#failIfUnfitted();
-      const motion = session.points.some(isMoved) ? this.#weights.motion(session) : null;
+      const moved = session.points.some(isMoved) ? this.#weights.document(session) : null;
       const name = `${stemOf(opened.name)}-bent.${extensionOf(opened.name) || opened.extensions[0]}`;
-      const { files } = await this.#core.save(name, motion, { progress, signal });
+      const { files } = await this.#core.save(name, moved, { progress, signal });
       for (const file of files) download(file.name, new Blob([file.bytes]));
-      this.toast("done", motion ? `Saved ${files.map((file) => file.name).join(" and ")}` : `Saved ${name}, which is the file as it was: nothing is moved`);
+      this.toast("done", moved ? `Saved ${files.map((file) => file.name).join(" and ")}` : `Saved ${name}, which is the file as it was: nothing is moved`);
     });
   }
 
   /** The control points and all settings, as `neuralmls deform --points` reads them. */
   async savePoints(): Promise<void> {
-    await this.#withShape("Saving", (opened) => {
+    await this.#withShape("Saving", async (opened) => {
+      await this.#weights.settled();
       const { session } = this.history;
       if (session.points.length === 0) throw new Error("There are no control points to save yet: click on the shape to add one.");
       const name = `${stemOf(opened.name)}.json`;
-      download(name, new Blob([formatSession(session, opened.dim)], { type: "application/json" }));
+      const text = await this.#core.sessionText(toDocument(session, opened.dim), this.store.value.fit.status === "ready");
+      download(name, new Blob([text], { type: "application/json" }));
       this.toast("done", `Saved ${name}`);
     });
   }
@@ -183,9 +182,9 @@ export class App {
     await this.#withShape("Saving", async (opened, progress, signal) => {
       await this.#weights.settled();
       this.#failIfUnfitted();
-      const motion = this.#weights.motion(this.history.session);
-      if (!motion) throw new Error("There are no control points yet: a morph target needs a deformation.");
-      const deformed = await this.#core.deform(motion, { progress, signal });
+      const document = this.#weights.document(this.history.session);
+      if (!document) throw new Error("There are no control points yet: a morph target needs a deformation.");
+      const deformed = await this.#core.deform(document, { progress, signal });
       const bytes = await this.display.morphTarget(deformed);
       download(`${stemOf(opened.name)}-morph.glb`, new Blob([bytes], { type: "model/gltf-binary" }));
       this.toast("done", `Saved ${stemOf(opened.name)}-morph.glb`);
@@ -210,7 +209,7 @@ export class App {
     await this.#keep(async () => {
       const work = await this.#autosave.load();
       if (!work || this.store.value.shape) return;
-      this.store.set({ recovery: { name: work.name, when: work.when, points: work.session.points.length } });
+      this.store.set({ recovery: { name: work.name, when: work.when, points: work.points } });
     });
   }
 
@@ -219,7 +218,11 @@ export class App {
       const work = await this.#autosave.load();
       if (!work) return;
       await this.#openShape(work.files, work.name);
-      this.history.reset(work.session);
+      const files = new Map([[work.name, new TextEncoder().encode(work.session)]]);
+      if (work.session !== "") {
+        const { document } = await this.#core.readSession(files, [work.name]);
+        this.history.reset(fromDocument(document, this.#defaults));
+      }
       this.setView({ ...work.view, before: false });
     });
   }
@@ -233,7 +236,7 @@ export class App {
 
   toast(kind: Toast["kind"], text: string): void {
     const id = ++this.#toasts;
-    const toast = { id, kind, text: sentence(text) };
+    const toast = { id, kind, text: asSentence(text) };
     const others = this.store.value.toasts.filter((other) => other.text !== toast.text);
     this.store.set({ toasts: [...others, toast].slice(-4) });
     if (kind !== "error") setTimeout(() => this.dismiss(id), TOAST_MILLISECONDS);
@@ -261,7 +264,11 @@ export class App {
 
   async #saveSession(): Promise<void> {
     await this.#keep(async () => {
-      await this.#autosave.saveSession(this.history.session, this.store.value.view);
+      const { shape, view } = this.store.value;
+      const { session } = this.history;
+      if (!shape) return;
+      const text = session.points.length > 0 ? JSON.stringify(toDocument(session, shape.opened.dim)) : "";
+      await this.#autosave.saveSession(text, session.points.length, view);
       this.store.set({ autosaved: new Date() });
     });
   }
@@ -321,19 +328,6 @@ export class App {
 }
 
 const messageOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
-
-const sentence = (text: string): string => {
-  const capital = /^[a-z]+[ :']/.test(text) && !/^\S+\.\w+:/.test(text) ? text[0].toUpperCase() + text.slice(1) : text;
-  return /[.!?]$/.test(capital) ? capital : `${capital}.`;
-};
-
-function textOf(name: string, bytes: Uint8Array): string {
-  try {
-    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
-  } catch {
-    throw new Error(`${name}: expected UTF-8 text`);
-  }
-}
 
 async function fetchBytes(url: string): Promise<Uint8Array> {
   const response = await fetch(url);

@@ -1,10 +1,9 @@
 /** All that the panels show. */
 
-import type { Soft } from "../model/handles.ts";
-import type { PointId, Session } from "../model/session.ts";
-import { EMPTY_SESSION } from "../model/session.ts";
+import { emptySession, type PointId, type Session } from "../model/session.ts";
+import type { Settings } from "../model/settings.ts";
 import { DEFAULT_VIEW, type View } from "../model/view.ts";
-import type { Advice, Files, Opened } from "../worker/protocol.ts";
+import type { Advice, Files, Opened, Report } from "../worker/protocol.ts";
 
 export interface OpenShape {
   opened: Opened;
@@ -60,8 +59,8 @@ export interface State {
   comparisonFit: FitState;
   /** How far each control point ends from its target, in file units. */
   distances: ReadonlyMap<PointId, number>;
-  /** Why control points do not arrive as the adherence says, and which one is to blame. */
-  soft: (Soft & { id: PointId }) | null;
+  /** What happens to the control points besides, in words. */
+  report: Pick<Report, "handles" | "soft" | "warnings"> | null;
   /** What is likely bad about the shape as it is, and the control points that it is about. */
   advice: readonly (Advice & { ids: PointId[] })[];
   /** The GPU cannot hold the weights: the core computes the frames. */
@@ -76,23 +75,24 @@ export interface State {
   autosaved: Date | null;
 }
 
-export const INITIAL_STATE: State = {
+/** Before anything is opened. */
+export const initialState = (settings: Settings, theme: Theme): State => ({
   shape: null,
-  session: EMPTY_SESSION,
+  session: emptySession(settings),
   undoLabel: undefined,
   redoLabel: undefined,
   view: DEFAULT_VIEW,
   fit: { status: "none" },
   comparisonFit: { status: "none" },
   distances: new Map(),
-  soft: null,
+  report: null,
   advice: [],
   slowFrames: false,
   busy: null,
   toasts: [],
   help: false,
-  theme: "system",
+  theme,
   samples: [],
   recovery: null,
   autosaved: null,
-};
+});

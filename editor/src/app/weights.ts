@@ -1,12 +1,12 @@
 /** Weights follow the control points: whenever one is added or moved at rest, or a parameter changes, they are fitted anew. */
 
 import type { History } from "../commands/index.ts";
-import { pointAt, type Vec3, distance, flatten } from "../model/vec3.ts";
-import { turnsOf } from "../model/turn.ts";
-import type { PointId, Session } from "../model/session.ts";
-import { type Settings, weightsKey } from "../model/settings.ts";
+import { type SessionDocument, toDocument } from "../model/document.ts";
 import type { Handles } from "../model/handles.ts";
-import type { Core, Fitted, Landed, Motion, Slot, WeightsSpec } from "../worker/protocol.ts";
+import type { ControlPoint, PointId, Session } from "../model/session.ts";
+import { otherKind } from "../model/settings.ts";
+import { flatten } from "../model/vec3.ts";
+import type { Core, Slot } from "../worker/protocol.ts";
 import type { FitState, State } from "./state.ts";
 import type { Store } from "./store.ts";
 
@@ -28,7 +28,7 @@ export type TakeWeights = (slot: Slot, weights: BoundWeights | undefined) => boo
 /** The progress of a quicker fit would only flicker. */
 const QUIET_MILLISECONDS = 150;
 
-/** How often it is asked during a drag where the control points land. */
+/** How often it is asked during a drag what happens to the control points. */
 const DRAG_MILLISECONDS = 80;
 
 export class Weights {
@@ -39,9 +39,9 @@ export class Weights {
   readonly #store: Store<State>;
   readonly #take: TakeWeights;
   readonly #keys: Record<Slot, string> = { main: "", comparison: "" };
-  readonly #bound: Partial<Record<Slot, BoundWeights>> = {};
-  #landing = false;
-  #landAgain = false;
+  readonly #bound: Partial<Record<Slot, BoundWeights & { points: readonly ControlPoint[] }>> = {};
+  #telling = false;
+  #tellAgain = false;
 
   constructor(core: Core, history: History, store: Store<State>, take: TakeWeights) {
     [this.#core, this.#history, this.#store, this.#take] = [core, history, store, take];
@@ -57,37 +57,38 @@ export class Weights {
       this.#keys[slot] = "";
       this.#unbind(slot);
     }
-    this.#store.set({ fit: { status: "none" }, comparisonFit: { status: "none" }, distances: new Map(), soft: null, advice: [], slowFrames: false });
+    this.#store.set({ fit: { status: "none" }, comparisonFit: { status: "none" }, distances: new Map(), report: null, advice: [], slowFrames: false });
   }
 
-  /** Fits where something has changed, and tells where the control points land. */
+  /** Fits where something has changed, and tells what happens to the control points. */
   refresh(): void {
     if (!this.#store.value.shape) return;
     if (!this.#history.inGesture) {
       const { session } = this.#history;
-      this.#fitIfNeeded("main", session, session.settings.kind);
-      const other = session.settings.kind === "neural" ? "classic" : "neural";
-      if (this.#store.value.view.comparison) this.#fitIfNeeded("comparison", session, other);
+      const kind = otherKind(session.settings.kind);
+      this.#fitIfNeeded("main", session);
+      if (this.#store.value.view.comparison) {
+        this.#fitIfNeeded("comparison", { ...session, settings: { ...session.settings, kind } });
+      }
       else if (this.#bound.comparison) this.#drop("comparison");
     }
     // Not within a frame of a drag.
     this.#asking ??= setTimeout(() => {
       this.#asking = undefined;
-      void this.#land();
+      void this.#tell();
     }, this.#history.inGesture ? DRAG_MILLISECONDS : 0);
   }
 
   #asking: ReturnType<typeof setTimeout> | undefined;
 
-  /** The motion of the control points that the weights of the slot "main" were fitted to; null without any. */
-  motion(session: Session): Motion | null {
+  /** The control points that the weights of the slot "main" were fitted to, moved as they are now; null without any. */
+  document(session: Session): SessionDocument | null {
+    const { shape } = this.#store.value;
     const bound = this.#bound.main;
-    if (!bound) return null;
+    if (!bound || !shape) return null;
     const byId = new Map(session.points.map((point) => [point.id, point]));
-    const targets = bound.ids.map((id, i): Vec3 => byId.get(id)?.target ?? pointAt(bound.p, i));
-    const turned = bound.ids.map((id) => byId.get(id)?.turn);
-    const { transform, temperature, adherence } = session.settings;
-    return { targets: flatten(targets), ...turnsOf(turned), transform, temperature, adherence };
+    const points = bound.points.map((point) => ({ ...(byId.get(point.id) ?? point), position: point.position }));
+    return toDocument({ ...session, points, pairs: [] }, shape.opened.dim);
   }
 
   /** Resolves when the weights belong to the session as it is. */
@@ -103,21 +104,22 @@ export class Weights {
     });
   }
 
-  #fitIfNeeded(slot: Slot, session: Session, kind: Settings["kind"]): void {
-    const { points, settings } = session;
-    const ofKind = { ...settings, kind };
-    const key = points.length === 0 ? "" : JSON.stringify([kind, weightsKey(ofKind), points.map((p) => [p.id, p.position])]);
+  #fitIfNeeded(slot: Slot, session: Session): void {
+    const { points, frame, settings } = session;
+    const { kind, weights } = settings;
+    const on = points.map(({ id, position, weight }) => [id, position, weight]);
+    const key = points.length === 0 ? "" : JSON.stringify([kind, weights[kind], frame, on]);
     if (key === this.#keys[slot]) return;
     this.#keys[slot] = key;
     if (points.length === 0) return this.#drop(slot);
-    void this.#fit(slot, session, spec(ofKind), key);
+    void this.#fit(slot, session, key);
   }
 
   #drop(slot: Slot): void {
     this.#keys[slot] = "";
     this.#unbind(slot);
     this.#report(slot, { status: "none" });
-    if (slot === "main") this.#store.set({ distances: new Map(), soft: null, slowFrames: false });
+    if (slot === "main") this.#store.set({ distances: new Map(), report: null, slowFrames: false });
   }
 
   #unbind(slot: Slot): void {
@@ -127,14 +129,14 @@ export class Weights {
     bound?.handles.free();
   }
 
-  async #fit(slot: Slot, session: Session, weights: WeightsSpec, key: string): Promise<void> {
-    const p = flatten(session.points.map((point) => point.position));
-    const ids = session.points.map((point) => point.id);
+  async #fit(slot: Slot, session: Session, key: string): Promise<void> {
+    const { points } = session;
+    const document = toDocument(session, this.#store.value.shape!.opened.dim);
     const current = (): boolean => this.#keys[slot] === key;
     const start = performance.now();
     this.#report(slot, { status: "fitting", stage: "train", fraction: 0 });
     try {
-      const fitted: Fitted = await this.#core.fit(p, weights, {
+      const { logits, ownLogits, loss, steps } = await this.#core.fit(document, {
         slot,
         progress: (stage, fraction) => {
           if (current() && performance.now() - start > QUIET_MILLISECONDS) {
@@ -143,24 +145,22 @@ export class Weights {
         },
       });
       if (!current()) return;
-      const handles = await this.#core.handles(p, fitted.ownLogits);
+      const handles = await this.#core.handles(document, ownLogits);
       if (!current()) return handles.free();
-      const { logits, ownLogits } = fitted;
-      const bound = { ids, p, logits, ownLogits, handles };
+      const [ids, p] = [points.map(({ id }) => id), flatten(points.map(({ position }) => position))];
+      const bound = { points, ids, p, logits, ownLogits, handles };
       const before = this.#bound[slot];
       this.#bound[slot] = bound;
       const fits = this.#take(slot, bound);
       before?.handles.free();
       if (slot === "main") this.#store.set({ slowFrames: !fits });
-      const milliseconds = performance.now() - start;
-      this.#report(slot, { status: "ready", loss: fitted.loss, steps: fitted.steps, milliseconds });
-      if (slot === "main" && fitted.shared.length > 0) {
-        const names = fitted.shared.map((i) => session.points[i].name).join(", ");
-        this.onWarning(`${names}: so close to others that they share their places, and stop short of their targets`);
-      }
-      void this.#land();
+      this.#report(slot, { status: "ready", loss, steps, milliseconds: performance.now() - start });
+      void this.#tell();
     } catch (error) {
       if (!current() || isAbort(error)) return;
+      // What was fitted before belongs to other control points, or to other weights than those that are asked for.
+      this.#unbind(slot);
+      if (slot === "main") this.#store.set({ distances: new Map(), report: null });
       this.#report(slot, { status: "failed", reason: error instanceof Error ? error.message : String(error) });
     }
   }
@@ -172,45 +172,35 @@ export class Weights {
     this.#store.set(slot === "main" ? { fit } : { comparisonFit: fit });
   }
 
-  /** Asks where the control points land, one question at a time; the last one always gets its answer. */
-  async #land(): Promise<void> {
-    if (this.#landing) {
-      this.#landAgain = true;
+  /** Asks what happens to the control points, one question at a time; the last one always gets its answer. */
+  async #tell(): Promise<void> {
+    if (this.#telling) {
+      this.#tellAgain = true;
       return;
     }
-    this.#landing = true;
+    this.#telling = true;
     try {
       do {
-        this.#landAgain = false;
-        const { session } = this.#history;
+        this.#tellAgain = false;
         const bound = this.#bound.main;
-        const motion = this.motion(session);
+        const document = this.document(this.#history.session);
         // While others are fitted the core answers for them; it is asked again when they are there.
-        if (!bound || !motion || this.#store.value.fit.status !== "ready") return;
-        let landed: Landed;
+        if (!bound || !document || this.#store.value.fit.status !== "ready") return;
         if (this.#store.value.slowFrames) {
-          const frame = await this.#core.deform(motion);
+          const frame = await this.#core.deform(document);
           this.showFrame(frame.positions, frame.maps);
-          landed = frame.landed;
-        } else {
-          landed = await this.#core.land(motion);
         }
+        const report = await this.#core.report(document);
         if (bound !== this.#bound.main) continue;
-        const away = bound.ids.map((id, i) => [id, distance(pointAt(landed.places, i), pointAt(motion.targets, i))] as const);
-        const soft = landed.soft && { ...landed.soft, id: bound.ids[landed.soft.index] };
-        this.#store.set({ distances: new Map(away), soft });
-      } while (this.#landAgain);
+        this.#store.set({ distances: new Map(bound.ids.map((id, i) => [id, report.distances[i]])), report });
+      } while (this.#tellAgain);
     } catch (error) {
       // A newer fit has ended the old one; it asks again when it is done.
       if (!isAbort(error)) this.onWarning(error instanceof Error ? error.message : String(error));
     } finally {
-      this.#landing = false;
+      this.#telling = false;
     }
   }
 }
 
 export const isAbort = (error: unknown): boolean => error instanceof DOMException && error.name === "AbortError";
-
-function spec(settings: Settings): WeightsSpec {
-  return settings.kind === "neural" ? { kind: "neural", ...settings.neural } : { kind: "classic", ...settings.classic };
-}

@@ -1,8 +1,8 @@
 /** Moves of control points: of their targets (a drag), or of their places at rest (which asks for a new fit). */
 
-import { mirrorVector, twinOf } from "../model/mirror.ts";
+import { mirrorOrientation, mirrorVector, twinOf } from "../model/mirror.ts";
+import { type Orientation, type Quaternion, rotatedBy, sameOrientation } from "../model/orientation.ts";
 import { type ControlPoint, find, type Moves, type PointId, type Session } from "../model/session.ts";
-import { mirrorTurn, type Quaternion, sameTurn, type Turn, turnedBy } from "../model/turn.ts";
 import { add, equal, subtract, type Vec3 } from "../model/vec3.ts";
 import type { Command } from "./history.ts";
 import { change } from "./points.ts";
@@ -40,26 +40,27 @@ function leading(session: Session): PointId[] {
 }
 
 /**
- * Turns the selected control point, or those of several that are turned already: the others of several turn by where they go.
+ * Rotates the selected control point, or those of several that are oriented already: the others of several rotate by where they go.
  * Twins follow, locked ones stay.
  */
-export function turnSelected(session: Session, by: Quaternion): Session {
+export function rotateSelected(session: Session, by: Quaternion): Session {
   const axis = session.settings.mirror;
   const alone = session.selection.length === 1;
   let next = session;
   for (const id of leading(session)) {
     const before = find(session, id);
-    if (!before || before.locked || !(alone || before.turn)) continue;
-    const turn = turnedBy(before.turn, by);
-    next = change(next, [id], (point) => turnedTo(point, turn));
+    if (!before || before.locked || !(alone || before.orientation)) continue;
+    const orientation = rotatedBy(before.orientation, by);
+    next = change(next, [id], (point) => orientedTo(point, orientation));
     const twin = axis === null ? undefined : twinOf(session, id);
-    if (axis !== null && twin !== undefined) next = change(next, [twin], (point) => turnedTo(point, mirrorTurn(turn, axis)));
+    if (axis === null || twin === undefined) continue;
+    next = change(next, [twin], (point) => orientedTo(point, mirrorOrientation(orientation, axis)));
   }
   return next;
 }
 
-function turnedTo(point: ControlPoint, turn: Turn): ControlPoint {
-  return point.locked || sameTurn(point.turn, turn) ? point : { ...point, turn };
+function orientedTo(point: ControlPoint, orientation: Orientation): ControlPoint {
+  return point.locked || sameOrientation(point.orientation, orientation) ? point : { ...point, orientation };
 }
 
 function movedTo(point: ControlPoint, moves: Moves, place: Vec3): ControlPoint {
@@ -93,15 +94,15 @@ export function put(id: PointId, moves: Moves, place: Vec3): Command {
   };
 }
 
-/** Takes control points back to their places at rest, and unturned: the selected ones, or all. Locked ones stay where they are. */
+/** Takes control points back to their places at rest, and to no orientation: the selected ones, or all. Locked ones stay where they are. */
 export function resetTargets(which: "selected" | "all"): Command {
   return {
     label: "Reset",
     apply(session) {
       const ids = which === "all" ? session.points.map((point) => point.id) : session.selection;
       return change(session, ids, (point) => {
-        const { turn, ...unturned } = point;
-        return movedTo(turn && !point.locked ? unturned : point, "target", point.position);
+        const { orientation, ...plain } = point;
+        return movedTo(orientation && !point.locked ? plain : point, "target", point.position);
       });
     },
   };

@@ -60,7 +60,7 @@ function withPoints(session: Session, places: readonly Place[]): Session {
   if (fresh.length === 0) return session;
   const names = freeNames(session, fresh.length);
   const first = nextId(session);
-  const added = fresh.map((place, i): ControlPoint => ({ id: first + i, name: names[i], ...place, locked: false }));
+  const added = fresh.map((place, i): ControlPoint => ({ id: first + i, name: names[i], ...place, weight: 1, locked: false }));
   return { ...session, points: [...session.points, ...added], selection: added.map((point) => point.id) };
 }
 

@@ -2,13 +2,13 @@
 
 import { findPairs } from "../model/mirror.ts";
 import type { Pair, PointId, Session } from "../model/session.ts";
-import type { ClassicParameters, NeuralParameters, Settings } from "../model/settings.ts";
+import type { Settings, Weights } from "../model/settings.ts";
 import type { Axis } from "../model/vec3.ts";
 import type { Command } from "./history.ts";
 import type { Box } from "./points.ts";
 
 /** Sets one of the settings. Successive ones of the same name, as a slider gives them, are one step. */
-export function set<K extends "kind" | "transform" | "temperature" | "adherence">(key: K, value: Settings[K]): Command {
+export function set<K extends "kind" | "transform" | "temperature" | "handles">(key: K, value: Settings[K]): Command {
   return {
     label: LABELS[key],
     mergeKey: `set ${key}`,
@@ -16,21 +16,17 @@ export function set<K extends "kind" | "transform" | "temperature" | "adherence"
   };
 }
 
-const LABELS = { kind: "Weights", transform: "Map", temperature: "Temperature", adherence: "Adherence" } as const;
+const LABELS = { kind: "Weights", transform: "Map", temperature: "Temperature", handles: "Handles" } as const;
 
-export function setNeural(change: Partial<NeuralParameters>): Command {
+/** Sets parameters of a kind of weights. */
+export function setWeights<K extends "neural" | "inverse-distance">(kind: K, change: Partial<Weights[K]>): Command {
   return {
-    label: "Network",
-    mergeKey: `neural ${Object.keys(change).join()}`,
-    apply: (session) => withSettings(session, { neural: { ...session.settings.neural, ...change } }),
-  };
-}
-
-export function setClassic(change: Partial<ClassicParameters>): Command {
-  return {
-    label: "Classic weights",
-    mergeKey: `classic ${Object.keys(change).join()}`,
-    apply: (session) => withSettings(session, { classic: { ...session.settings.classic, ...change } }),
+    label: kind === "neural" ? "Network" : "Inverse distance",
+    mergeKey: `${kind} ${Object.keys(change).join()}`,
+    apply(session) {
+      const { weights } = session.settings;
+      return withSettings(session, { weights: { ...weights, [kind]: { ...weights[kind], ...change } } });
+    },
   };
 }
 

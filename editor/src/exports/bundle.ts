@@ -2,6 +2,7 @@
 
 import { Color, DoubleSide, type Material, MeshStandardMaterial, SRGBColorSpace, Texture } from "three";
 import type { Box } from "../commands/index.ts";
+import type { Constants } from "../model/handles.ts";
 import type { Session } from "../model/session.ts";
 import type { Drawn } from "../viewport/shapeView.ts";
 
@@ -9,13 +10,13 @@ export interface Bundle {
   title: string;
   box: Box;
   dim: 1 | 2 | 3;
+  /** With the control points that the weights are for. */
   session: Session;
-  /** The control points that the weights are for, and where they were. */
-  ids: readonly number[];
-  p: number[];
   logits: string;
-  /** The logits at the control points' own places, and the core that takes them to their targets; null where handles are soft. */
-  exact: { ownLogits: string; core: string } | null;
+  ownLogits: string;
+  /** What takes the control points to their targets, and what the shader has of it. */
+  core: string;
+  constants: Constants;
   positions: string;
   normals: string;
   points: string;

@@ -1,19 +1,18 @@
 /** One page (HTML) that holds the bound shape and everything that it takes to drag it, offline. */
 
 import type { Box } from "../commands/index.ts";
-import type { PointId, Session } from "../model/session.ts";
+import type { Constants } from "../model/handles.ts";
+import type { Session } from "../model/session.ts";
 import type { Drawn } from "../viewport/shapeView.ts";
 import { type Bundle, encode, pack, packMaterial } from "./bundle.ts";
 
-/** The weights that are shown, and the control points that they are for. */
+/** The weights that are shown. */
 interface Bound {
-  ids: readonly PointId[];
-  p: Float64Array;
   logits: Float32Array;
   ownLogits: Float32Array;
 }
 
-/** `core`: the bytes of the core, which the page needs where control points are to arrive. */
+/** `session`: with the control points that the weights are for; `core`: its bytes. */
 export async function page(
   title: string,
   drawn: Drawn,
@@ -21,7 +20,8 @@ export async function page(
   dim: 1 | 2 | 3,
   bound: Bound,
   session: Session,
-  core: () => Promise<ArrayBuffer>,
+  core: ArrayBuffer,
+  constants: Constants,
 ): Promise<string> {
   const response = await fetch("./offline.js");
   if (!response.ok) throw new Error("This copy of the editor has no offline.js, which the page to drag is made of.");
@@ -30,11 +30,10 @@ export async function page(
     box: { centre: box.centre, half: box.half },
     dim,
     session: { ...session, selection: [] },
-    ids: bound.ids,
-    p: [...bound.p],
     logits: encode(finite(bound.logits)),
-    exact:
-      session.settings.adherence > 0 ? { ownLogits: encode(finite(bound.ownLogits)), core: await pack(await core()) } : null,
+    ownLogits: encode(finite(bound.ownLogits)),
+    core: await pack(core),
+    constants,
     positions: encode(drawn.rest.positions),
     normals: encode(drawn.rest.normals),
     points: encode(drawn.rest.points),

@@ -1,25 +1,33 @@
-/** Control points that arrive: where to aim so that they do, by the core (crates/core/src/exact.rs). */
+/** Control points that arrive: where to aim so that they do, by the core (crates/core/src/aim). */
 
 import type { Settings } from "./settings.ts";
 
+/** Where to aim, and what local maps follow where the control points around them leave something open. Overwritten by the next. */
+export interface Aim {
+  /** Effective targets, m x 3 in file units, which go with the targets without a jump; the targets themselves where they are left soft. */
+  readonly targets: Float64Array;
+  /** Of the map that fits all control points with equal weights: row-major 3 x 3. */
+  readonly rotation: Float32Array;
+  readonly scale: number;
+  readonly linear: Float32Array;
+}
+
 export interface Handles {
+  /** The square of each control point's distance to the nearest other one, in file units: what an oriented one counts by. */
+  readonly squares: Float64Array;
   /**
-   * Effective targets for the targets of the control points, both m x 3 in file units, which go with them without a jump; the targets
-   * themselves where control points are left soft. `turns` (m x 9) as `turnsOf` has them. Computed at once: 0.1 to 0.3 ms for a dozen control points.
+   * For the targets (m x 3 in file units) and orientations (m x 9, as `orientationsOf` has them) of the control points. Computed at
+   * once: 0.1 to 0.3 ms for a dozen control points.
    */
-  aim(targets: Float64Array, settings: Pick<Settings, "transform" | "temperature" | "adherence"> & { turns?: Float64Array }): Float64Array;
+  aim(targets: Float64Array, orientations: Float64Array | undefined, settings: Settings): Aim;
   /** Gives the memory back. */
   free(): void;
 }
 
-/** Why control points do not arrive as the adherence says. */
-export interface Soft {
-  /** One has too little of the weight at its own place, so that all are left soft; or they go as far as they can, and one stays off. */
-  readonly reason: "shared" | "unreached";
-  /** Which one. */
-  readonly index: number;
-  /** The weight that it has there, or the distance that it stays off. */
-  readonly amount: number;
-  /** With what they would arrive, tried: a temperature, or the affine map. */
-  readonly remedy: number | "affine" | null;
+/** What the shader's arithmetic takes from the core's (crates/core/src/mls). */
+export interface Constants {
+  /** How much the map of all control points counts against the local moments, relative to their size. */
+  readonly anchorWeight: number;
+  /** What stands for a missing extent of the control points, relative to the one that they have. */
+  readonly ridge: number;
 }

@@ -1,7 +1,8 @@
 /** Twins across a plane of symmetry, which is perpendicular to an axis and goes through the middle of the shape's box. */
 
+import type { Orientation } from "./orientation.ts";
 import type { ControlPoint, Pair, PointId, Session } from "./session.ts";
-import { type Axis, axisIndex, distance, type Vec3 } from "./vec3.ts";
+import { type Axis, axisIndex, distance, subtract, type Vec3 } from "./vec3.ts";
 
 /** How far off its mirror image a twin may be, relative to half of the box's longest side. */
 const TOLERANCE = 0.05;
@@ -18,6 +19,11 @@ export function mirrorPoint(v: Vec3, axis: Axis, centre: Vec3): Vec3 {
   const mirrored: [number, number, number] = [...v];
   mirrored[axisIndex(axis)] = 2 * centre[axisIndex(axis)] - v[axisIndex(axis)];
   return mirrored;
+}
+
+/** Mirrored: what of the axis lies in the mirror's plane turns round. */
+export function mirrorOrientation(orientation: Orientation, axis: Axis): Orientation {
+  return { ...orientation, axis: subtract([0, 0, 0], mirrorVector(orientation.axis, axis)) };
 }
 
 /** Whether a place is so close to the plane that it is its own twin. */

@@ -1,7 +1,7 @@
 /** A session: the control points and all that is set. Never changed in place, so that undo is to take the former one. */
 
-import { DEFAULT_SETTINGS, type Settings } from "./settings.ts";
-import type { Turn } from "./turn.ts";
+import type { Orientation } from "./orientation.ts";
+import type { Settings } from "./settings.ts";
 import { equal, type Vec3 } from "./vec3.ts";
 
 export type PointId = number;
@@ -12,10 +12,14 @@ export interface ControlPoint {
   readonly name: string;
   readonly position: Vec3;
   readonly target: Vec3;
-  /** How it turns what is near it; without it, it does not resist turning. */
-  readonly turn?: Turn;
+  /** How it rotates what is near it; without it, it does not resist rotations. */
+  readonly orientation?: Orientation;
+  /** How closely it is to be met, 0 to 1, of what the handles are set to. */
+  readonly weight: number;
   /** It stays where it is: moves pass it over. */
   readonly locked: boolean;
+  /** What a file has of it besides: its group, and keys of other programs. Kept. */
+  readonly others?: object;
 }
 
 /** What a move moves: where control points are moved to, or where they are at rest. */
@@ -30,11 +34,15 @@ export interface Session {
   readonly selection: readonly PointId[];
   readonly pairs: readonly Pair[];
   readonly settings: Settings;
+  /** The box in which weights are trained, where a file says it; else that of the shape. */
+  readonly frame?: object;
+  /** Keys of other programs, and the editor's own that this one does not know. Kept. */
+  readonly others: object;
 }
 
-export const EMPTY_SESSION: Session = { points: [], selection: [], pairs: [], settings: DEFAULT_SETTINGS };
+export const emptySession = (settings: Settings): Session => ({ points: [], selection: [], pairs: [], settings, others: {} });
 
-export const isMoved = (point: ControlPoint): boolean => point.turn !== undefined || !equal(point.position, point.target);
+export const isMoved = (point: ControlPoint): boolean => point.orientation !== undefined || !equal(point.position, point.target);
 
 export function find(session: Session, id: PointId): ControlPoint | undefined {
   return session.points.find((point) => point.id === id);

@@ -11,7 +11,7 @@ export interface View {
   readonly wireframe: boolean;
   /** The shape as it was, for as long as a key is held. */
   readonly before: boolean;
-  /** Neural and classic weights side by side. */
+  /** Neural and inverse-distance weights side by side. */
   readonly comparison: boolean;
   readonly tool: Tool;
   /** What the gizmo, the arrows and the numbers move. */

@@ -2,9 +2,11 @@
 
 import { History, resetTargets, set } from "../commands/index.ts";
 import { type Bundle, decodeFloats, decodeIndices, unpack, unpackMaterial } from "../exports/bundle.ts";
-import type { Handles } from "../model/handles.ts";
+import { toDocument } from "../model/document.ts";
+import { flatten } from "../model/vec3.ts";
 import { DEFAULT_VIEW } from "../model/view.ts";
 import { Viewport } from "../viewport/viewport.ts";
+import { initSync } from "../wasm/neuralmls_wasm.js";
 import { createHandles } from "../worker/handles.ts";
 
 const COLDEST = 0.05;
@@ -15,7 +17,7 @@ const element = <T extends HTMLElement>(id: string): T => document.getElementByI
 const bundle = JSON.parse(element("bundle").textContent ?? "") as Bundle;
 
 const history = new History(bundle.session);
-const viewport = new Viewport(element("view"), history, { ...DEFAULT_VIEW, adding: false });
+const viewport = new Viewport(element("view"), history, { ...DEFAULT_VIEW, adding: false }, bundle.constants);
 viewport.setShape(
   {
     rest: {
@@ -34,15 +36,15 @@ viewport.setShape(
   undefined,
 );
 
-const p = Float64Array.from(bundle.p);
-const ownLogits = decodeFloats(bundle.exact?.ownLogits ?? "");
-void handles().then((handles) => {
-  viewport.setWeights("main", { ids: bundle.ids, p, logits: decodeFloats(bundle.logits), ownLogits, handles });
-});
+void bind();
 
-async function handles(): Promise<Handles> {
-  if (!bundle.exact) return { aim: (targets) => targets, free: () => undefined };
-  return createHandles(await WebAssembly.compile(await unpack(bundle.exact.core)), p, bundle.dim, ownLogits);
+async function bind(): Promise<void> {
+  const { session, dim } = bundle;
+  const [logits, ownLogits] = [decodeFloats(bundle.logits), decodeFloats(bundle.ownLogits)];
+  initSync({ module: await WebAssembly.compile(await unpack(bundle.core)) });
+  const handles = createHandles(toDocument(session, dim), dim, ownLogits);
+  const ids = session.points.map(({ id }) => id);
+  viewport.setWeights("main", { ids, p: flatten(session.points.map(({ position }) => position)), logits, ownLogits, handles });
 }
 
 const temperature = element<HTMLInputElement>("temperature");

@@ -1,4 +1,5 @@
 import { useEffect, useRef } from "preact/hooks";
+import { otherKind, type WeightsKind } from "../model/settings.ts";
 import { GESTURES, SHORTCUTS } from "./actions.ts";
 import { Button } from "./controls.tsx";
 import { Icon } from "./icons.tsx";
@@ -85,12 +86,12 @@ export function SideLabels() {
   const { view, session, comparisonFit } = useAppState();
   if (!view.comparison) return null;
   const { kind } = session.settings;
-  const name = (neural: boolean): string => (neural ? "Neural" : "Classic");
+  const name = (kind: WeightsKind): string => kind[0].toUpperCase() + kind.slice(1).replace("-", " ");
   return (
     <div class="side-labels" aria-hidden="true">
-      <span>{name(kind === "neural")}</span>
+      <span>{name(kind)}</span>
       <span>
-        {name(kind !== "neural")}
+        {name(otherKind(kind))}
         {comparisonFit.status === "fitting" ? " …" : ""}
       </span>
     </div>

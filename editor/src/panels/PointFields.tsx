@@ -1,8 +1,8 @@
 import { useEffect, useState } from "preact/hooks";
 import { pair, put, rename, resetTargets, toggleLock, unpair } from "../commands/index.ts";
 import { twinOf } from "../model/mirror.ts";
+import type { Orientation } from "../model/orientation.ts";
 import { type ControlPoint, isMoved, leader, selected } from "../model/session.ts";
-import type { Turn } from "../model/turn.ts";
 import { AXES, type Vec3 } from "../model/vec3.ts";
 import { Button, NumberField } from "./controls.tsx";
 import { useApp, useAppState } from "./useStore.ts";
@@ -41,17 +41,17 @@ export function PointFields() {
       </div>
       {row("target", "Target")}
       {row("position", "At rest")}
-      {point.turn && <p class="hint">{turnText(point.turn)}</p>}
+      {point.orientation && <p class="hint">{orientationText(point.orientation)}</p>}
       {session.settings.mirror && <Twin point={point} />}
       {all.length > 1 && <p class="hint">{all.length} are selected and move together.</p>}
     </div>
   );
 }
 
-function turnText({ axis, degrees, scale }: Turn): string {
+function orientationText({ axis, degrees, scale }: Orientation): string {
   const length = Math.hypot(...axis);
   const about = axis.map((c) => (c / length).toFixed(2)).join(", ");
-  return `Turned by ${degrees.toFixed(1)}° about (${about})${scale === 1 ? "" : `, scaled by ${scale}`}.`;
+  return `Rotated by ${degrees.toFixed(1)}° about (${about})${scale === 1 ? "" : `, scaled by ${scale}`}.`;
 }
 
 function NameField({ point }: { point: ControlPoint }) {

@@ -8,7 +8,7 @@ const CLOCK = new Intl.DateTimeFormat([], { hour: "2-digit", minute: "2-digit" }
 
 /** How things stand, quietly. */
 export function StatusBar() {
-  const { fit, comparisonFit, session, shape, distances, soft, advice, view, autosaved, slowFrames } = useAppState();
+  const { fit, comparisonFit, session, shape, distances, report, advice, view, autosaved, slowFrames } = useAppState();
   if (!shape) return null;
   const moved = session.points.filter(isMoved);
   const away = moved.map((point) => distances.get(point.id)).filter((d) => d !== undefined);
@@ -23,7 +23,7 @@ export function StatusBar() {
       {away.length > 0 && (
         <span title="The largest distance of a control point from its target">
           {arrived(farthest, size) ? "on target" : `off target by at most ${distance(farthest, size)} (${percent(farthest / size)})`}
-          {soft?.reason === "shared" ? ", left soft" : ""}
+          {report?.soft ? `, ${report.handles}` : ""}
         </span>
       )}
       {advice.length > 0 && <span>worth a look: {advice.map(({ kind }) => WORDS[kind]).join(", ")}</span>}
@@ -36,7 +36,7 @@ export function StatusBar() {
   );
 }
 
-const WORDS = { folds: "folds", torn: "tears", ungoverned: "a part without a control point" } as const;
+const WORDS = { misses: "missed targets", folds: "folds", torn: "tears", ungoverned: "a part without a control point" } as const;
 
 function textOf(fit: FitState): string {
   switch (fit.status) {

@@ -5,7 +5,7 @@ import { useApp, useAppState } from "./useStore.ts";
 
 const TOOLS: readonly { tool: Tool; label: string; hint: string; icon: IconName }[] = [
   { tool: "translate", label: "Move", hint: "W", icon: "translate" },
-  { tool: "rotate", label: "Turn", hint: "E", icon: "rotate" },
+  { tool: "rotate", label: "Rotate", hint: "E", icon: "rotate" },
   { tool: "scale", label: "Scale several", hint: "R", icon: "scale" },
 ];
 

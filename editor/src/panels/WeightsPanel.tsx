@@ -1,13 +1,15 @@
-import { set, setClassic, setNeural } from "../commands/index.ts";
-import type { Soft } from "../model/handles.ts";
+import { asSentence } from "../app/sentence.ts";
+import { set, setWeights } from "../commands/index.ts";
 import type { Transform, WeightsKind } from "../model/settings.ts";
-import { distance, NumberField, Section, Segmented, short, Slider, Switch } from "./controls.tsx";
+import { NumberField, Section, Segmented, Slider, Switch } from "./controls.tsx";
 import { useApp, useAppState } from "./useStore.ts";
 
 const KINDS: readonly { value: WeightsKind; label: string; title: string }[] = [
   { value: "neural", label: "Neural", title: "A network that is trained on the control points" },
-  { value: "classic", label: "Classic", title: "Inverse distance, 1 / (d^(2 alpha) + epsilon)" },
+  { value: "inverse-distance", label: "Inverse distance", title: "1 / (d^(2 alpha) + epsilon), as in classic MLS" },
 ];
+/** Shown where a session asks for it: it is not fitted here. */
+const SHAPE_AWARE = { value: "shape-aware", label: "Shape-aware", title: "A network that is trained on the shape too" } as const;
 
 const MAPS: readonly { value: Transform; label: string; title: string }[] = [
   { value: "rigid", label: "Rigid", title: "Parts turn and move" },
@@ -18,10 +20,12 @@ const MAPS: readonly { value: Transform; label: string; title: string }[] = [
 export function WeightsPanel() {
   const app = useApp();
   const { settings } = useAppState().session;
+  const { neural, "inverse-distance": inverse } = settings.weights;
+  const kinds = settings.kind === "shape-aware" ? [...KINDS, SHAPE_AWARE] : KINDS;
   const seal = (): void => app.history.seal();
   return (
     <Section title="Weights">
-      <Segmented label="Weight function" value={settings.kind} options={KINDS} onChange={(kind) => app.do(set("kind", kind))} />
+      <Segmented label="Weight function" value={settings.kind} options={kinds} onChange={(kind) => app.do(set("kind", kind))} />
       <Slider
         label="Temperature"
         title="Lower: parts move more apart from each other; higher: more together"
@@ -32,63 +36,79 @@ export function WeightsPanel() {
         onInput={(value) => app.do(set("temperature", value))}
         onDone={seal}
       />
-      {settings.kind === "classic" ? (
+      {settings.kind === "inverse-distance" && (
         <>
-          <Slider label="Alpha" title="How fast a control point's weight falls with the distance" value={settings.classic.alpha} min={0.25} max={6} onInput={(alpha) => app.do(setClassic({ alpha }))} onDone={seal} />
-          <Slider label="Epsilon" title="Above 0 no control point has all the weight at its place" value={settings.classic.epsilon} min={0} max={0.5} onInput={(epsilon) => app.do(setClassic({ epsilon }))} onDone={seal} />
+          <Slider label="Alpha" title="How fast a control point's weight falls with the distance" value={inverse.alpha} min={0.25} max={6} onInput={(alpha) => app.do(setWeights("inverse-distance", { alpha }))} onDone={seal} />
+          <Slider label="Epsilon" title="Above 0 no control point has all the weight at its place" value={inverse.epsilon} min={0} max={0.5} onInput={(epsilon) => app.do(setWeights("inverse-distance", { epsilon }))} onDone={seal} />
         </>
-      ) : (
+      )}
+      {settings.kind === "neural" && (
         <div class="pair-of-fields">
           <label class="field" title="Neurons a hidden layer">
             <span>Width</span>
-            <NumberField label="Width" value={settings.neural.width} min={1} max={16384} whole onChange={(width) => app.do(setNeural({ width }))} />
+            <NumberField label="Width" value={neural.width} min={1} max={16384} whole onChange={(width) => app.do(setWeights("neural", { width }))} />
           </label>
           <label class="field" title="Where the network's random numbers start">
             <span>Seed</span>
-            <NumberField label="Seed" value={settings.neural.seed} min={0} max={Number.MAX_SAFE_INTEGER} whole onChange={(seed) => app.do(setNeural({ seed }))} />
+            <NumberField label="Seed" value={neural.seed} min={0} max={Number.MAX_SAFE_INTEGER} whole onChange={(seed) => app.do(setWeights("neural", { seed }))} />
           </label>
         </div>
       )}
       <Segmented label="Local map" value={settings.transform} options={MAPS} onChange={(map) => app.do(set("transform", map))} />
-      <ExactHandles />
+      <Handles />
     </Section>
   );
 }
 
-/** Whether control points go near their targets, as in the paper, or all the way. */
-function ExactHandles() {
+/** Whether control points go near their targets, as in the paper, or all the way; and what comes of it. */
+function Handles() {
   const app = useApp();
-  const { session, soft, shape } = useAppState();
-  const { adherence } = session.settings;
-  const take = (value: number) => app.do(set("adherence", value));
+  const { session, report } = useAppState();
+  const { handles } = session.settings;
+  const take = (value: typeof handles) => app.do(set("handles", value));
+  const seal = (): void => app.history.seal();
   return (
     <>
       <Switch
-        label="Exact handles"
+        label="Handles arrive"
         title="On: control points arrive at their targets; off: they go near them, as in the paper"
-        on={adherence > 0}
+        on={handles !== "soft"}
         onChange={(on) => {
-          take(on ? 1 : 0);
-          app.history.seal();
+          take(on ? "auto" : "soft");
+          seal();
         }}
       />
-      {adherence > 0 && (
-        <Slider label="Adherence" title="1: control points arrive; 0: they go near their targets, as in the paper" value={adherence} min={0} max={1} closed onInput={take} onDone={() => app.history.seal()} />
+      {handles !== "soft" && (
+        <Slider
+          label="How closely"
+          title="1: control points arrive; 0: they go near their targets, as in the paper"
+          value={typeof handles === "number" ? handles : 1}
+          min={0}
+          max={1}
+          closed
+          onInput={(part) => take(part === 1 ? "auto" : part)}
+          onDone={seal}
+        />
       )}
-      {soft && shape && (
-        <p class="hint" role="status">
-          {whySoft(soft, session.points.find(({ id }) => id === soft.id)?.name ?? "one", 2 * shape.opened.frame.half)}
-        </p>
+      {(handles === "auto" || handles === "exact") && (
+        <Switch
+          label="Exact"
+          title="On: they arrive whatever it does to the shape; off: all are left soft where one has too little weight of its own"
+          on={handles === "exact"}
+          onChange={(on) => {
+            take(on ? "exact" : "auto");
+            seal();
+          }}
+        />
+      )}
+      {report && (
+        <div role="status">
+          {report.soft !== null && <p class="hint">{asSentence(`${report.handles}: ${report.soft}`)}</p>}
+          {report.warnings.map((warning) => (
+            <p class="hint" key={warning}>{asSentence(warning)}</p>
+          ))}
+        </div>
       )}
     </>
   );
-}
-
-function whySoft({ reason, amount, remedy }: Soft, name: string, size: number): string {
-  const why =
-    reason === "shared"
-      ? `Left soft: ${name} has only ${amount.toPrecision(2)} of the weight at its own place`
-      : `${name} stays ${distance(amount, size)} off`;
-  const help = remedy === null ? "" : remedy === "affine" ? " The affine map takes them there." : ` At temperature ${short(remedy)} they arrive.`;
-  return `${why}.${help}`;
 }

@@ -11,14 +11,18 @@
  * Affine maps are treated alike: `M = G + E^T (P + 1e-12 |P|)^-1` from the residuals E, with P in a frame along a_j and the
  * largest remaining direction, and Cholesky's method, which is accurate for graded matrices.
  */
-export const DEFORM_VERTEX_SHADER = /* glsl */ `#version 300 es
+
+import type { Constants } from "../model/handles.ts";
+
+/** The shader, with the constants of the core. */
+export const deformVertexShader = ({ anchorWeight, ridge }: Constants): string => /* glsl */ `#version 300 es
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 
 const int RIGID = 0, SIMILARITY = 1, AFFINE = 2;
 const int NO_TINT = 0, TINT_BY_WEIGHT = 1, TINT_BY_POINT = 2;
-const float ANCHOR_WEIGHT = 1e-9, RIDGE = 1e-12;
+const float ANCHOR_WEIGHT = ${anchorWeight.toExponential()}, RIDGE = ${ridge.toExponential()};
 // Below this a component is the rounding error of a difference of single-precision places.
 const float NOISE = 4e-7;
 
@@ -31,8 +35,8 @@ uniform sampler2D controlPoints;  // row 0: p, row 1: q, row 2: colours, rows 3 
 uniform int m;
 uniform int transform;
 uniform float temperature;
-uniform bool moved;               // whether any target is not its control point, or turned
-uniform bool anyTurned;           // whether any control point carries a rotation
+uniform bool moved;               // whether any target is not its control point, or is oriented
+uniform bool anyOriented;           // whether any control point carries a rotation
 uniform mat3 anchorRotation;
 uniform float anchorScale;
 uniform mat3 anchorLinear;
@@ -51,7 +55,7 @@ vec4 fourLogits(int i) {
 vec3 p(int i) { return texelFetch(controlPoints, ivec2(i, 0), 0).xyz; }
 vec3 q(int i) { return texelFetch(controlPoints, ivec2(i, 1), 0).xyz; }
 // The transpose of the rotation that a control point carries, its scale, and the square of the size of its frame: 0 for none.
-mat3 turnOf(int i) {
+mat3 rotationOf(int i) {
   vec3 x = texelFetch(controlPoints, ivec2(i, 3), 0).xyz, y = texelFetch(controlPoints, ivec2(i, 4), 0).xyz;
   return mat3(x, y, texelFetch(controlPoints, ivec2(i, 5), 0).xyz);
 }
@@ -136,8 +140,8 @@ mat3 bestRotation(mat3 c) {
   return v * transpose(u);
 }
 
-// What a turned control point counts: the square of its weight times that of its frame, over the second-largest weight unless the
-// dominant one is turned (crates/core/src/mls/turned.rs).
+// What an oriented control point counts: the square of its weight times that of its frame, over the second-largest weight unless the
+// dominant one is oriented (crates/core/src/mls/oriented.rs).
 float shareOf(int i, float logit) {
   float r = relative(i, logit), w = i == k ? first : second * r;
   return squareOf(i) * w * (squareOf(k) > 0.0 ? w : r);
@@ -185,9 +189,9 @@ mat3 conformal(vec3 pk, vec3 qk, out Moments moments) {
   c -= outerProduct(second * sumA, sumB);
   extent -= second * dot(sumA, sumA);
   moments = Moments(rows * sumA, sumShift);
-  mat3 turns = mat3(0.0);
+  mat3 rotations = mat3(0.0);
   float larger = 0.0;
-  if (anyTurned) {
+  if (anyOriented) {
     if (squareOf(k) > 0.0) {
       c *= second;
       extent *= second;
@@ -196,13 +200,13 @@ mat3 conformal(vec3 pk, vec3 qk, out Moments moments) {
       if ((i & 3) == 0) four = fourLogits(i);
       if (squareOf(i) == 0.0) continue;
       float share = shareOf(i, four[i & 3]);
-      turns += share * (transpose(rows) * turnOf(i) * columns);
+      rotations += share * (transpose(rows) * rotationOf(i) * columns);
       larger += 3.0 * share * scaleOf(i);
       extent += 3.0 * share;
     }
   }
   mat3 places = c;
-  c += turns;
+  c += rotations;
   float norm = size(c);
   mat3 rotation = anchorRotation;
   mat3 local = transpose(columns) * anchorRotation * rows;
@@ -257,7 +261,7 @@ mat3 affine(vec3 pk, vec3 qk, out Moments moments) {
   pp -= outerProduct(second * sumA, sumA);
   pe -= outerProduct(second * sumA, sumE);
   moments = Moments(rows * sumA, sumShift);
-  if (anyTurned) {
+  if (anyOriented) {
     if (squareOf(k) > 0.0) {
       pp *= second;
       pe *= second;
@@ -267,7 +271,7 @@ mat3 affine(vec3 pk, vec3 qk, out Moments moments) {
       if (squareOf(i) == 0.0) continue;
       float share = shareOf(i, four[i & 3]);
       pp += mat3(share);
-      pe += share * (transpose(rows) * (scaleOf(i) * turnOf(i) - transpose(anchorLinear)));
+      pe += share * (transpose(rows) * (scaleOf(i) * rotationOf(i) - transpose(anchorLinear)));
     }
   }
   float norm = size(pp);

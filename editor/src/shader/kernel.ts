@@ -4,10 +4,10 @@
  * a frame in which only the camera moves.
  */
 
+import type { Aim, Constants } from "../model/handles.ts";
 import type { Transform } from "../model/settings.ts";
-import { anchor } from "./anchor.ts";
-import { DEFORM_VERTEX_SHADER, NO_FRAGMENTS } from "./glsl.ts";
-import { isStill, type TurnedPoint } from "./turned.ts";
+import { deformVertexShader, NO_FRAGMENTS } from "./glsl.ts";
+import { isStill, type OrientedPoint } from "./oriented.ts";
 
 /** What is drawn: each vertex belongs to a point of the shape, whose logits it has. */
 export interface RestVertices {
@@ -24,7 +24,9 @@ export interface GpuMotion {
   /** m x 3 */
   p: Float64Array;
   q: Float64Array;
-  turned: readonly TurnedPoint[];
+  oriented: readonly OrientedPoint[];
+  /** What local maps follow where the control points around them leave something open. */
+  anchor: Pick<Aim, "rotation" | "scale" | "linear">;
   transform: Transform;
   temperature: number;
   tint: Tint;
@@ -33,7 +35,7 @@ export interface GpuMotion {
 const TRANSFORM_CODES: Record<Transform, number> = { rigid: 0, similarity: 1, affine: 2 };
 const TINT_CODES: Record<Tint["by"], number> = { nothing: 0, weight: 1, point: 2 };
 const UNIFORMS = [
-  "logits", "controlPoints", "m", "transform", "temperature", "moved", "anyTurned",
+  "logits", "controlPoints", "m", "transform", "temperature", "moved", "anyOriented",
   "anchorRotation", "anchorScale", "anchorLinear", "tintBy", "tinted",
 ] as const; // prettier-ignore
 /** Those of one number that are no whole ones. */
@@ -62,9 +64,9 @@ export class Kernel {
   readonly #numbers = new Map<(typeof UNIFORMS)[number], number>();
 
   /** `state` is asked for what others set too, so that they know; the context itself where there is nobody else. */
-  constructor(gl: WebGL2RenderingContext, state: GlState = gl) {
+  constructor(gl: WebGL2RenderingContext, constants: Constants, state: GlState = gl) {
     [this.gl, this.state] = [gl, state];
-    this.program = link(gl);
+    this.program = link(gl, deformVertexShader(constants));
     this.uniforms = Object.fromEntries(
       UNIFORMS.map((name) => [name, gl.getUniformLocation(this.program, name)]),
     ) as typeof this.uniforms;
@@ -189,27 +191,26 @@ export class BoundVertices {
     if (this.#logits && motion.p.length === 3 * this.#m) this.#kernel.use(() => this.#compute(motion));
   }
 
-  #compute({ p, q, turned, transform, temperature, tint }: GpuMotion): void {
+  #compute({ p, q, oriented, anchor, transform, temperature, tint }: GpuMotion): void {
     const kernel = this.#kernel;
     const { gl, program, state, uniforms } = kernel;
     const m = this.#m;
     state.useProgram(program);
     kernel.bindTexture("logits", this.#logits ?? null);
     kernel.bindTexture("controlPoints", this.#controlPoints);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, m, ROWS, gl.RGBA, gl.FLOAT, this.#fill(p, q, turned));
-    const { rotation, scale, linear } = anchor(p, q, turned);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, m, ROWS, gl.RGBA, gl.FLOAT, this.#fill(p, q, oriented));
     kernel.setNumber("logits", UNITS.logits);
     kernel.setNumber("controlPoints", UNITS.controlPoints);
     kernel.setNumber("m", m);
     kernel.setNumber("transform", TRANSFORM_CODES[transform]);
     kernel.setNumber("temperature", temperature);
-    kernel.setNumber("moved", p.every((c, at) => c === q[at]) && turned.every(isStill) ? 0 : 1);
-    kernel.setNumber("anyTurned", turned.length > 0 ? 1 : 0);
-    kernel.setNumber("anchorScale", scale);
+    kernel.setNumber("moved", p.every((c, at) => c === q[at]) && oriented.every(isStill) ? 0 : 1);
+    kernel.setNumber("anyOriented", oriented.length > 0 ? 1 : 0);
+    kernel.setNumber("anchorScale", anchor.scale);
     kernel.setNumber("tintBy", TINT_CODES[tint.by]);
     kernel.setNumber("tinted", tint.by === "weight" ? tint.of : -1);
-    gl.uniformMatrix3fv(uniforms.anchorRotation, true, rotation);
-    gl.uniformMatrix3fv(uniforms.anchorLinear, true, linear);
+    gl.uniformMatrix3fv(uniforms.anchorRotation, true, anchor.rotation);
+    gl.uniformMatrix3fv(uniforms.anchorLinear, true, anchor.linear);
     gl.bindVertexArray(this.#array);
     // What is written to must not be bound to anything else, and drawing may have left it so.
     gl.bindBuffer(gl.ARRAY_BUFFER, null);
@@ -253,7 +254,7 @@ export class BoundVertices {
     if (this.#logits) gl.deleteTexture(this.#logits);
   }
 
-  #fill(p: Float64Array, q: Float64Array, turned: readonly TurnedPoint[]): Float32Array {
+  #fill(p: Float64Array, q: Float64Array, oriented: readonly OrientedPoint[]): Float32Array {
     const [table, m] = [this.#table, this.#m];
     for (let i = 0; i < m; i++) {
       for (let c = 0; c < 3; c++) {
@@ -262,7 +263,7 @@ export class BoundVertices {
       }
     }
     table.fill(0, 12 * m);
-    for (const { index, rotation, scale, square } of turned) {
+    for (const { index, rotation, scale, square } of oriented) {
       for (let row = 0; row < 3; row++) table.set(rotation.slice(3 * row, 3 * row + 3), 4 * ((3 + row) * m + index));
       table[4 * (3 * m + index) + 3] = square;
       table[4 * (4 * m + index) + 3] = scale;
@@ -281,10 +282,10 @@ function dataTexture(kernel: Kernel, unit: keyof typeof UNITS): WebGLTexture {
   return texture;
 }
 
-function link(gl: WebGL2RenderingContext): WebGLProgram {
+function link(gl: WebGL2RenderingContext, vertexShader: string): WebGLProgram {
   const program = gl.createProgram();
   for (const [type, source] of [
-    [gl.VERTEX_SHADER, DEFORM_VERTEX_SHADER],
+    [gl.VERTEX_SHADER, vertexShader],
     [gl.FRAGMENT_SHADER, NO_FRAGMENTS],
   ] as const) {
     const shader = gl.createShader(type);

@@ -1,7 +1,5 @@
 /** The work is kept in the browser (IndexedDB), so that a closed tab or a crash loses nothing. */
 
-import type { Session } from "../model/session.ts";
-import { settingsFrom } from "../model/settings.ts";
 import type { View } from "../model/view.ts";
 
 const DATABASE = "neuralmls-editor";
@@ -11,7 +9,10 @@ const STORE = "work";
 export interface Work {
   name: string;
   files: ReadonlyMap<string, Uint8Array>;
-  session: Session;
+  /** The text of a session file; "": without control points. */
+  session: string;
+  /** How many control points there are. */
+  points: number;
   view: View;
   when: Date;
 }
@@ -40,8 +41,8 @@ export class Autosave {
     });
   }
 
-  async saveSession(session: Session, view: View): Promise<void> {
-    const head: Head = { session, view, when: new Date() };
+  async saveSession(session: string, points: number, view: View): Promise<void> {
+    const head: Head = { session, points, view, when: new Date() };
     await this.#write((store) => store.put(head, "head"));
   }
 
@@ -49,11 +50,9 @@ export class Autosave {
   async load(): Promise<Work | undefined> {
     const store = (await this.#open).transaction(STORE).objectStore(STORE);
     const [shape, head] = await Promise.all([result(store.get("shape")), result(store.get("head"))]);
-    if (!shape || !head) return undefined;
-    const { session, view, when } = head as Head;
-    // An older editor may not have known all settings.
-    const settings = settingsFrom(session.settings);
-    return { ...(shape as Pick<Work, "name" | "files">), session: { ...session, settings }, view, when };
+    // An editor before this one kept something else.
+    if (!shape || typeof (head as Head | undefined)?.session !== "string") return undefined;
+    return { ...(shape as Pick<Work, "name" | "files">), ...(head as Head) };
   }
 
   async clear(): Promise<void> {

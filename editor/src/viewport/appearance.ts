@@ -4,7 +4,7 @@
  */
 
 import { Color, DoubleSide, LoadingManager, type Material, Mesh, MeshPhongMaterial, MeshStandardMaterial, type Object3D, Vector3 } from "three";
-import type { OpenedShape } from "./drawn.ts";
+import type { OpenedShape } from "./openedShape.ts";
 import type { CornerData } from "./restVertices.ts";
 
 /** What a file looks like besides its form. */

@@ -1,4 +1,4 @@
-/** The gizmo: moves, turns or scales the selected control points along axes, in planes and freely. */
+/** The gizmo: moves, rotates or scales the selected control points along axes, in planes and freely. */
 
 import { Group, type Matrix4, Object3D, type Quaternion, type Scene, Vector3 } from "three";
 import { TransformControls } from "three/addons/controls/TransformControls.js";
@@ -8,8 +8,8 @@ import type { Stage } from "./stage.ts";
 
 export interface GizmoEvents {
   begin(): void;
-  /** How places (relative to the shape's box) move, from those with which the drag began, and how they turn, if they do. */
-  move(map: (place: Vector3) => Vector3, turn: Quaternion | undefined): void;
+  /** How places (relative to the shape's box) move, from those with which the drag began, and how they rotate, if they do. */
+  move(map: (place: Vector3) => Vector3, rotation: Quaternion | undefined): void;
   end(): void;
 }
 
@@ -58,10 +58,10 @@ export class Gizmo {
     this.#showAxes();
   }
 
-  /** A shape in the plane turns about z alone. */
+  /** A control point in the plane rotates about z alone. */
   #showAxes(): void {
-    const [dim, turns] = [this.#dim, this.#controls.mode === "rotate"];
-    const axes = { showX: dim > 2 || !turns, showY: dim > 2 || (dim > 1 && !turns), showZ: dim > 2 || (dim > 1 && turns) };
+    const [dim, rotates] = [this.#dim, this.#controls.mode === "rotate"];
+    const axes = { showX: dim > 2 || !rotates, showY: dim > 2 || (dim > 1 && !rotates), showZ: dim > 2 || (dim > 1 && rotates) };
     Object.assign(this.#controls, { ...axes, showXY: dim > 1, showYZ: dim > 2, showXZ: dim > 2 });
   }
 

@@ -1,11 +1,11 @@
 /** What the GPU is told of a frame: how the control points that weights were computed for are moved. */
 
 import type { Handles } from "../model/handles.ts";
+import { type Orientation, orientationsOf } from "../model/orientation.ts";
 import { find, leader, type PointId, type Session } from "../model/session.ts";
-import { type Turn, turnsOf } from "../model/turn.ts";
 import type { Colouring } from "../model/view.ts";
 import type { GpuMotion, Tint } from "../shader/kernel.ts";
-import { turnedPoints } from "../shader/turned.ts";
+import { orientedPoints } from "../shader/oriented.ts";
 import type { Space } from "./space.ts";
 
 /** Which control points weights were computed for, and where they were. */
@@ -20,34 +20,50 @@ export interface Bound {
   handles: Handles;
 }
 
-/** Weights that are still being fitted: what was bound last moves as far as its control points are still there. */
-export function motionOf(bound: Bound, session: Session, space: Space, look: { atRest: boolean; colouring: Colouring }): GpuMotion {
-  const { ids, p, handles } = bound;
-  const { points } = session;
-  const { transform, temperature, adherence } = session.settings;
-  const targets = p.slice();
-  const turns = new Array<Turn | undefined>(ids.length).fill(undefined);
-  if (!look.atRest) {
-    for (let i = 0; i < ids.length; i++) {
+/** Frames of one set of weights; what they are made in is there once. */
+export class Motions {
+  readonly bound: Bound;
+  readonly #space: Space;
+  readonly #p: Float64Array;
+  readonly #q: Float64Array;
+  readonly #targets: Float64Array;
+  readonly #orientations: (Orientation | undefined)[];
+
+  constructor(bound: Bound, space: Space) {
+    [this.bound, this.#space] = [bound, space];
+    this.#p = space.allToView(bound.p, new Float64Array(bound.p.length));
+    this.#q = new Float64Array(bound.p.length);
+    this.#targets = new Float64Array(bound.p.length);
+    this.#orientations = new Array<Orientation | undefined>(bound.ids.length);
+  }
+
+  /** Weights that are still being fitted: what was bound last moves as far as its control points are still there. */
+  of(session: Session, look: { atRest: boolean; colouring: Colouring }): GpuMotion {
+    const { ids, p, handles } = this.bound;
+    const { points, settings } = session;
+    const [targets, orientations] = [this.#targets, this.#orientations];
+    targets.set(p);
+    orientations.fill(undefined);
+    for (let i = 0; i < ids.length && !look.atRest; i++) {
       const point = points[i]?.id === ids[i] ? points[i] : find(session, ids[i]);
       if (!point) continue;
-      turns[i] = point.turn;
+      orientations[i] = point.orientation;
       for (let c = 0; c < 3; c++) {
         // Bit for bit where it is not moved.
         if (point.target[c] !== point.position[c]) targets[3 * i + c] += point.target[c] - point.position[c];
       }
     }
+    const aim = handles.aim(targets, orientationsOf(orientations), settings);
+    return {
+      p: this.#p,
+      q: this.#space.allToView(aim.targets, this.#q),
+      oriented: orientedPoints(orientations, handles.squares, this.#space.box.half),
+      anchor: aim,
+      transform: settings.transform,
+      temperature: settings.temperature,
+      tint: tintOf(this.bound, session, look.colouring),
+    };
   }
-  const aimed = handles.aim(targets, { transform, temperature, adherence, ...turnsOf(turns) });
-  const places = space.allToView(p);
-  return {
-    p: places,
-    q: space.allToView(aimed),
-    turned: turnedPoints(places, turns),
-    transform,
-    temperature,
-    tint: tintOf(bound, session, look.colouring),
-  };
 }
 
 function tintOf({ ids }: Bound, session: Session, colouring: Colouring): Tint {

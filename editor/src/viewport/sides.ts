@@ -6,14 +6,14 @@ import type { Slot } from "../model/slot.ts";
 import type { View } from "../model/view.ts";
 import type { Kernel, RestVertices } from "../shader/kernel.ts";
 import { colourOf } from "./markers.ts";
-import { type Bound, motionOf } from "./motion.ts";
+import { type Bound, Motions } from "./motion.ts";
 import { type Drawn, ShapeView } from "./shapeView.ts";
 import type { Space } from "./space.ts";
 import type { Stage } from "./stage.ts";
 
 interface Side {
   view: ShapeView;
-  bound: Bound | undefined;
+  motions: Motions | undefined;
   /** Vertices as the core has computed them. */
   frame?: Pick<RestVertices, "positions" | "normals">;
 }
@@ -35,7 +35,7 @@ export class Sides {
 
   /** The weights that are shown. */
   get bound(): Bound | undefined {
-    return this.#sides.main?.bound;
+    return this.#sides.main?.motions?.bound;
   }
 
   setShape(drawn: Drawn, space: Space): void {
@@ -52,7 +52,7 @@ export class Sides {
     if (!bound) {
       if (slot === "comparison") this.#remove("comparison");
       else {
-        main.bound = undefined;
+        main.motions = undefined;
         delete main.frame;
         main.view.bound.show(main.view.drawn.rest);
       }
@@ -61,7 +61,7 @@ export class Sides {
     const side = this.#sides[slot] ?? this.#add(slot, main.view.drawn);
     const colours = new Float32Array(bound.ids.flatMap((_, i) => colourOf(i)));
     const fits = side.view.bound.setLogits(bound.logits, bound.ids.length, colours);
-    side.bound = fits ? bound : undefined;
+    side.motions = fits ? new Motions(bound, this.#space) : undefined;
     delete side.frame;
     return fits;
   }
@@ -90,9 +90,9 @@ export class Sides {
     for (const slot of ["main", "comparison"] as const) {
       const side = this.#sides[slot];
       if (!side) continue;
-      if (side.bound) side.view.deform(motionOf(side.bound, session, this.#space, { atRest, colouring: view.colouring }));
+      if (side.motions) side.view.deform(side.motions.of(session, { atRest, colouring: view.colouring }));
       else if (side.frame) side.view.bound.show(atRest ? side.view.drawn.rest : side.frame);
-      side.view.show(side.bound ? view.colouring : "material", view.wireframe);
+      side.view.show(side.motions ? view.colouring : "material", view.wireframe);
     }
   }
 
@@ -126,7 +126,7 @@ export class Sides {
 
   #add(slot: Slot, drawn: Drawn): Side {
     const view = new ShapeView(this.#kernel, drawn);
-    const side: Side = { view, bound: undefined };
+    const side: Side = { view, motions: undefined };
     this.#sides[slot] = side;
     (drawn.index ? this.#stage.scene : this.#stage.clouds.scene).add(view.object);
     view.object.visible = slot === "main";

@@ -25,10 +25,9 @@ export class Space {
     return [centre[0] + half * place.x, y, z];
   }
 
-  /** Many places, 3 numbers each. */
-  allToView(places: Float64Array): Float64Array {
+  /** Many places, 3 numbers each, written to `entered`. */
+  allToView(places: Float64Array, entered: Float64Array): Float64Array {
     const { centre, half } = this.box;
-    const entered = new Float64Array(places.length);
     for (let at = 0; at < places.length; at++) entered[at] = (places[at] - centre[at % 3]) / half;
     return entered;
   }

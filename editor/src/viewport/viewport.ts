@@ -2,7 +2,8 @@
 
 import { Box3, type Quaternion, type Ray, Sphere, Vector2, Vector3 } from "three";
 import type { SerializedBVH } from "three-mesh-bvh";
-import { addPoint, type Box, type History, moveSelected, select, turnSelected } from "../commands/index.ts";
+import { addPoint, type Box, type History, moveSelected, rotateSelected, select } from "../commands/index.ts";
+import type { Constants } from "../model/handles.ts";
 import { twinOf } from "../model/mirror.ts";
 import { selected, type Session } from "../model/session.ts";
 import type { Slot } from "../model/slot.ts";
@@ -38,16 +39,16 @@ export class Viewport {
   #view: View;
   #stale = true;
 
-  constructor(host: HTMLElement, history: History, view: View) {
+  constructor(host: HTMLElement, history: History, view: View, constants: Constants) {
     this.#history = history;
     this.#view = view;
     this.stage = new Stage(host);
     const gl = this.stage.renderer.getContext() as WebGL2RenderingContext;
-    this.#sides = new Sides(new Kernel(gl, this.stage.renderer.state as GlState), this.stage, this.#space);
+    this.#sides = new Sides(new Kernel(gl, constants, this.stage.renderer.state as GlState), this.stage, this.#space);
     this.stage.scene.add(this.#markers.object);
     this.#gizmo = new Gizmo(this.stage, this.stage.scene, {
       begin: () => history.begin("Move"),
-      move: (map, turn) => this.#drag((place) => this.#space.toFile(map(this.#space.toView(place))), turn),
+      move: (map, rotation) => this.#drag((place) => this.#space.toFile(map(this.#space.toView(place))), rotation),
       end: () => history.commit(),
     });
     this.#pointer = new Pointer(this.stage, this.#gizmo, {
@@ -201,11 +202,12 @@ export class Viewport {
     this.stage.home([...corners, ...targets], this.#space.dim < 3);
   }
 
-  #drag(to: (place: Vec3) => Vec3, turn?: Quaternion): void {
+  #drag(to: (place: Vec3) => Vec3, rotation?: Quaternion): void {
     this.#history.preview((session) => {
-      // One that is turned stays in its place, to the last bit.
-      const moved = turn && session.selection.length === 1 ? session : moveSelected(session, this.#view.moves, to);
-      return turn && this.#view.moves === "target" ? turnSelected(moved, [turn.x, turn.y, turn.z, turn.w]) : moved;
+      // One that is rotated stays in its place, to the last bit.
+      const moved = rotation && session.selection.length === 1 ? session : moveSelected(session, this.#view.moves, to);
+      if (!rotation || this.#view.moves !== "target") return moved;
+      return rotateSelected(moved, [rotation.x, rotation.y, rotation.z, rotation.w]);
     });
   }
 

@@ -4,14 +4,13 @@
  */
 
 import coreUrl from "../wasm/neuralmls_wasm_bg.wasm?url";
+import { initSync } from "../wasm/neuralmls_wasm.js";
 import { widen, widenMaps } from "./coordinates.ts";
 import { createHandles } from "./handles.ts";
 import type { Moved } from "./messages.ts";
-import { type CallOptions, type Core, CoreError, type Files, type Fitted, type Motion, type Slot } from "./protocol.ts";
+import { type CallOptions, type Core, CoreError, type Files, type Fitted, type Opened, type SessionDocument, type Slot } from "./protocol.ts";
 import { Remote } from "./remote.ts";
-
-/** Places that are looked at for advice: as many as the command line's. */
-const PLACES = 4000;
+import { readSession, rules, withSession } from "./sessions.ts";
 
 /** Starts loading the core; the first call waits for it. */
 export function createCore(): Core {
@@ -47,10 +46,7 @@ interface Open {
   name: string;
   /** n x dim */
   x: Float64Array;
-  dim: number;
-  hasNormals: boolean;
-  /** Where advice is looked for. */
-  places: Promise<Float64Array> | null;
+  opened: Opened;
 }
 
 /** A worker that has the points, and its newest fit. */
@@ -72,24 +68,40 @@ class Client implements Core {
     this.#core.catch(() => undefined); // each call that waits for it is told
   }
 
+  async rules() {
+    await this.#here();
+    return rules();
+  }
+
   async open(files: Files, name: string, options?: CallOptions) {
     this.#opening?.end(); // a newer one takes its place
     const { remote, give } = await this.#read(files, name, options);
     const { opened, x } = give;
     this.close();
-    this.#shape = { remote, files, name, x, dim: opened.dim, hasNormals: opened.hasNormals, places: null };
+    this.#shape = { remote, files, name, x, opened };
     this.#start("main");
     return opened;
   }
 
-  async fit(controlPoints: Float64Array, weights: Parameters<Core["fit"]>[1], options: CallOptions & { slot?: Slot } = {}) {
+  async readSession(files: Files, names: readonly string[]) {
+    const { dim, bounds } = this.#present().opened;
+    await this.#here();
+    return readSession(files, names, { min: Float64Array.from(bounds.min.slice(0, dim)), max: Float64Array.from(bounds.max.slice(0, dim)) });
+  }
+
+  async sessionText(session: SessionDocument, fitted: boolean) {
+    if (fitted) return (await this.#fitted()).call("sessionText", { session });
+    await this.#here();
+    return withSession(session, (session) => session.to_json());
+  }
+
+  async fit(session: SessionDocument, options: CallOptions & { slot?: Slot } = {}) {
     const slot = options.slot ?? "main";
     let fitter = this.#fitters.get(slot);
     if (fitter?.busy) fitter.remote.end();
     if (!fitter || fitter.remote.ended) fitter = this.#start(slot);
     const { remote, loaded } = fitter;
-    const ask = { controlPoints, weights };
-    const fitting = loaded.then(() => remote.call("fit", ask, options));
+    const fitting = loaded.then(() => remote.call("fit", { session }, options));
     fitter.fitting = fitting;
     fitter.busy = true;
     try {
@@ -99,31 +111,28 @@ class Client implements Core {
     }
   }
 
-  async deform(motion: Motion, options: CallOptions & { slot?: Slot } = {}) {
-    const [{ positions, maps }, landed] = await Promise.all([
-      this.#moved(motion, true, options),
-      this.land(motion, options),
-    ]);
-    const { dim } = this.#present();
-    return { positions: widen(positions, dim), maps: widenMaps(maps!, dim), landed };
+  async deform(session: SessionDocument, options: CallOptions = {}) {
+    const { positions, maps } = await this.#moved(session, true, options);
+    const { dim } = this.#present().opened;
+    return { positions: widen(positions, dim), maps: widenMaps(maps!, dim) };
   }
 
-  async land(motion: Motion, options: CallOptions & { slot?: Slot } = {}) {
-    return (await this.#fitted(options.slot)).call("land", { motion }, options);
+  async report(session: SessionDocument, options: CallOptions = {}) {
+    return (await this.#fitted()).call("report", { session }, options);
   }
 
-  async advise(motion: Motion, options: CallOptions = {}) {
-    const shape = this.#present();
-    shape.places ??= this.#reader().then((reader) => reader.call("sample", { count: PLACES }));
-    return (await this.#fitted()).call("advise", { motion, places: await shape.places }, options);
+  async advise(session: SessionDocument, options: CallOptions = {}) {
+    return (await this.#fitted()).call("advise", { session }, options);
   }
 
-  async handles(controlPoints: Float64Array, ownLogits: Float32Array) {
-    return createHandles(await this.#core, controlPoints, this.#present().dim, ownLogits);
+  async handles(session: SessionDocument, ownLogits: Float32Array) {
+    const { dim } = this.#present().opened;
+    await this.#here();
+    return createHandles(session, dim, ownLogits);
   }
 
-  async save(name: string, motion: Motion | null, options: CallOptions = {}) {
-    const moved = motion && (await this.#moved(motion, this.#present().hasNormals, options));
+  async save(name: string, session: SessionDocument | null, options: CallOptions = {}) {
+    const moved = session && (await this.#moved(session, this.#present().opened.hasNormals, options));
     return (await this.#reader()).call("write", { name, moved }, options);
   }
 
@@ -153,9 +162,9 @@ class Client implements Core {
   }
 
   #start(slot: Slot): Fitter {
-    const { x, dim } = this.#present();
+    const { x, opened } = this.#present();
     const remote = new Remote(this.#core);
-    const loaded = remote.call("load", { x, dim });
+    const loaded = remote.call("load", { x, dim: opened.dim, triangles: opened.triangles });
     loaded.catch(() => undefined); // the fit that waits for it is told
     const fitter = { remote, loaded, fitting: null, busy: false };
     this.#fitters.set(slot, fitter);
@@ -163,20 +172,25 @@ class Client implements Core {
   }
 
   /** The worker whose newest fit is done. */
-  async #fitted(slot: Slot = "main"): Promise<Remote> {
+  async #fitted(): Promise<Remote> {
     for (;;) {
-      const fitting = this.#fitters.get(slot)?.fitting;
+      const fitting = this.#fitters.get("main")?.fitting;
       if (!fitting) throw new CoreError("there are no weights yet: add a control point");
       const failed = await fitting.then(() => null, (error: unknown) => ({ error }));
-      const fitter = this.#fitters.get(slot);
+      const fitter = this.#fitters.get("main");
       if (fitter?.fitting !== fitting) continue; // a newer one has taken its place
       if (failed) throw failed.error;
       return fitter.remote;
     }
   }
 
-  async #moved(motion: Motion, maps: boolean, { slot, ...options }: CallOptions & { slot?: Slot }): Promise<Moved> {
-    return (await this.#fitted(slot)).call("deform", { motion, maps }, options);
+  async #moved(session: SessionDocument, maps: boolean, options: CallOptions): Promise<Moved> {
+    return (await this.#fitted()).call("deform", { session, maps }, options);
+  }
+
+  /** The core on this thread, for what is too small for a worker. */
+  async #here(): Promise<void> {
+    initSync({ module: await this.#core }); // the first time
   }
 
   /** The worker that has the shape's file; read anew if it was lost. */

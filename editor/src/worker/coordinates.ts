@@ -6,8 +6,14 @@ import { CoreError, type Frame, type Vec3 } from "./protocol.ts";
 export function widen(points: Float64Array<ArrayBuffer>, dim: number): Float64Array<ArrayBuffer> {
   if (dim === 3) return points;
   const wide = new Float64Array((points.length / dim) * 3);
-  for (let i = 0; i < points.length; i++) wide[3 * Math.floor(i / dim) + (i % dim)] = points[i]!;
+  widenInto(wide, points, dim);
   return wide;
+}
+
+/** As many points as fit into `wide` (n x 3), of n x dim numbers and more. */
+export function widenInto(wide: Float64Array, points: Float64Array, dim: number): void {
+  const count = (wide.length / 3) * dim;
+  for (let i = 0; i < count; i++) wide[3 * Math.floor(i / dim) + (i % dim)] = points[i]!;
 }
 
 /** n x 3 -> n x dim. */

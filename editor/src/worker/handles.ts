@@ -1,20 +1,35 @@
 /**
- * Exact handles on the main thread, from an instance of the core of its own. A worker's answer would come a frame late, and the surface
+ * Where to aim, on the main thread, from an instance of the core of its own. A worker's answer would come a frame late, and the surface
  * would trail behind its markers; the control points alone are so few that the thread does not feel it.
  */
 
-import type { Handles } from "../model/handles.ts";
-import { Handles as CoreHandles, initSync } from "../wasm/neuralmls_wasm.js";
-import { narrow, narrowMaps, widen } from "./coordinates.ts";
+import { type SessionDocument, settingsEntry } from "../model/document.ts";
+import type { Aim, Handles } from "../model/handles.ts";
+import type { Settings } from "../model/settings.ts";
+import { Handles as CoreHandles } from "../wasm/neuralmls_wasm.js";
+import { narrow, narrowMaps, widenInto, widenMaps } from "./coordinates.ts";
+import { withSession } from "./sessions.ts";
 
-/** Of the control points (m x 3) of a shape with points of `dim` coordinates, with the logits at their own places (m x m). */
-export function createHandles(core: WebAssembly.Module, p: Float64Array, dim: number, ownLogits: Float32Array): Handles {
-  initSync({ module: core }); // the first time
-  const handles = new CoreHandles(narrow(p, dim), dim, ownLogits);
+/** Of a session with control points of `dim` coordinates, with the logits at their own places (m x m). */
+export function createHandles(document: SessionDocument, dim: number, ownLogits: Float32Array): Handles {
+  const handles = withSession(document, (session) => new CoreHandles(session, ownLogits));
+  const m = document.control_points.length;
+  const aim = { targets: new Float64Array(3 * m), rotation: new Float32Array(9), scale: 1, linear: new Float32Array(9) } satisfies Aim;
+  let set: Settings | undefined;
   return {
-    aim(targets, { turns, transform, temperature, adherence }) {
-      const aimed = handles.aim(narrow(targets, dim), turns && narrowMaps(turns, dim), transform, temperature, adherence);
-      return widen(aimed as Float64Array<ArrayBuffer>, dim);
+    squares: handles.squares() as Float64Array,
+    aim(targets, orientations, settings) {
+      if (settings !== set) {
+        withSession({ ...document, settings: settingsEntry(settings) }, (session) => handles.set_session(session));
+        set = settings;
+      }
+      const found = handles.aim(narrow(targets, dim), orientations && narrowMaps(orientations, dim));
+      widenInto(aim.targets, found, dim);
+      const [anchor, size] = [found.subarray(m * dim) as Float64Array<ArrayBuffer>, dim * dim];
+      aim.rotation.set(widenMaps(anchor.subarray(0, size), dim));
+      aim.scale = anchor[size];
+      aim.linear.set(widenMaps(anchor.subarray(size + 1), dim));
+      return aim;
     },
     free: () => handles.free(),
   };

@@ -1,19 +1,19 @@
 /** The messages between `remote.ts` and `worker.ts`: what a worker can be asked, and what it gives. */
 
-import type { Advice, Fitted, Landed, Motion, Opened, Saved, Stage, WeightsSpec } from "./protocol.ts";
+import type { Advice, Fitted, Opened, Report, Saved, SessionDocument, Stage } from "./protocol.ts";
 
 /** Questions and answers by name. A worker holds at most one shape, one set of points and one fit. */
 export interface Operations {
   /** Reads a shape and keeps it; gives its exact positions (n x dim) too, for the workers that fit. */
   open: { ask: { files: [string, Uint8Array][]; name: string }; give: { opened: Opened; x: Float64Array<ArrayBuffer> } };
   /** Takes points to fit weights to. */
-  load: { ask: { x: Float64Array; dim: number }; give: null };
-  fit: { ask: { controlPoints: Float64Array; weights: WeightsSpec }; give: Fitted };
-  deform: { ask: { motion: Motion; maps: boolean }; give: Moved };
-  land: { ask: { motion: Motion }; give: Landed };
-  /** Places all over the shape, for `advise` (k x dim). */
-  sample: { ask: { count: number }; give: Float64Array<ArrayBuffer> };
-  advise: { ask: { motion: Motion; places: Float64Array }; give: Advice[] };
+  load: { ask: { x: Float64Array; dim: number; triangles: Uint32Array | null }; give: null };
+  fit: { ask: { session: SessionDocument }; give: Fitted };
+  deform: { ask: { session: SessionDocument; maps: boolean }; give: Moved };
+  report: { ask: { session: SessionDocument }; give: Report };
+  advise: { ask: { session: SessionDocument }; give: Advice[] };
+  /** The text of a session file, with the frame of the fit. */
+  sessionText: { ask: { session: SessionDocument }; give: string };
   /** The shape's file with other positions; null: as it was read. */
   write: { ask: { name: string; moved: Moved | null }; give: Saved };
   farthestPoints: { ask: { count: number; seed: number }; give: Float64Array<ArrayBuffer> };

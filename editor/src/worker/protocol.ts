@@ -1,16 +1,17 @@
 /**
  * What the main thread and the workers say to each other. The rest of the editor talks to `CoreClient` (client.ts) only.
  *
- * All coordinates are in the units of the shape's file and in double precision, but for `Opened.positions`, which are relative to
- * the shape's box. Symbols as in ARCHITECTURE.md: x points, p control points, q targets, n points, m control points.
+ * Sessions go to the core as documents of session files. All coordinates are in the units of the shape's file and in double precision, but
+ * for `Opened.positions`, which are relative to the shape's box. Symbols as in ARCHITECTURE.md: n points, m control points.
  */
 
-import type { Handles, Soft } from "../model/handles.ts";
-import type { Transform } from "../model/settings.ts";
+import type { SessionDocument } from "../model/document.ts";
+import type { Constants, Handles } from "../model/handles.ts";
+import type { Settings } from "../model/settings.ts";
 import type { Slot } from "../model/slot.ts";
 import type { Vec3 } from "../model/vec3.ts";
 
-export type { Handles, Slot, Soft, Transform, Vec3 };
+export type { Constants, Handles, SessionDocument, Settings, Slot, Vec3 };
 
 /** Files that belong together, by name: a shape, its materials, textures and buffers. */
 export type Files = ReadonlyMap<string, Uint8Array>;
@@ -49,64 +50,46 @@ export interface Frame {
   half: number;
 }
 
-/** A weight function. */
-export type WeightsSpec =
-  | {
-      kind: "neural";
-      /** Neurons a hidden layer: 1 to 16384. */
-      width: number;
-      /** An integer from 0 on. */
-      seed: number;
-      /** A fixed number; null: until every control point has 0.9 of the weight at its own place (at most 2000). */
-      steps: number | null;
-    }
-  | {
-      kind: "classic";
-      /** > 0 */
-      alpha: number;
-      /** >= 0, in units of half of the box's longest side */
-      epsilon: number;
-    };
+/** What the core says once and for all. */
+export interface Rules {
+  /** The settings that hold where nothing is said. */
+  defaults: Settings;
+  constants: Constants;
+}
 
-/** A weight function evaluated. */
+/** Control points that were read. */
+export interface ReadSession {
+  document: SessionDocument;
+  /** What was left out, and what a person should know of them beside the shape, a sentence each. */
+  notes: string[];
+}
+
+/** Weights fitted and evaluated. */
 export interface Fitted {
-  /** m */
-  controlPoints: number;
-  /** n x m, row by row (point by point). +Infinity is possible for classic weights with epsilon 0. */
+  /** n x m, row by row (point by point). +Infinity is possible for inverse distance with epsilon 0. */
   logits: Float32Array<ArrayBuffer>;
   /** m x m: the logits at the control points' own places; softmax(row i / T)[i] is the weight that i has there. */
   ownLogits: Float32Array<ArrayBuffer>;
-  /** Mean cross-entropy after the training; null for classic weights. */
+  /** Mean cross-entropy after the training; null for weights that are not trained. */
   loss: number | null;
-  /** Steps that were trained; 0 for classic weights. */
+  /** Steps that were trained; 0 for weights that are not. */
   steps: number;
-  /** Milliseconds of the training (0 for classic weights), and of the evaluation at the points. */
+  /** Milliseconds of the fit, and of the evaluation at the points. */
   milliseconds: { train: number; evaluate: number };
-  /**
-   * Control points that the whole training did not part from others (own weight below 0.85 at temperature 1), and which stop short of
-   * their targets, for a warning as the command line's. Empty for classic weights and for a fixed number of steps.
-   */
-  shared: number[];
 }
 
-/** How the control points are moved. */
-export interface Motion {
-  /** m x 3 in file units (for narrow tables the missing coordinates are passed over). */
-  targets: Float64Array;
-  /** m x 9: how each turns, a rotation times a scale, row-major; NaN for those that do not say. Without it none does. */
-  turns?: Float64Array;
-  transform: Transform;
-  temperature: number;
-  /** From 0, near the targets, to 1, onto them; control points that this would harm are left soft. */
-  adherence: number;
-}
-
-/** Where the control points land. */
-export interface Landed {
-  /** m x 3 in file units */
-  places: Float64Array<ArrayBuffer>;
-  /** Why they do not arrive as the adherence says, if they do not. */
-  soft: Soft | null;
+/** What happens to the control points (crates/session/src/report.rs). */
+export interface Report {
+  /** Where they land, m x dim. */
+  places: number[];
+  /** How far each ends from its target. */
+  distances: number[];
+  /** How closely they are met, in a few words. */
+  handles: string;
+  /** Why all of them are left soft although more is asked for, and what would help; null where they are not. */
+  soft: string | null;
+  /** What a person should know, a sentence each. */
+  warnings: string[];
 }
 
 /** The core's result, for checks, statistics and where the GPU has no float textures. */
@@ -115,19 +98,16 @@ export interface Deformed {
   positions: Float64Array<ArrayBuffer>;
   /** The local maps M, row-major, n x 9. */
   maps: Float64Array<ArrayBuffer>;
-  landed: Landed;
 }
 
-/** One thing that is likely bad about a deformation (crates/core/src/advice.rs). */
+/** One thing that is likely bad about a deformation (crates/session/src/advice.rs). */
 export interface Advice {
-  kind: "folds" | "torn" | "ungoverned";
-  /** The part of the shape that is folded; the greatest stretch; how many spacings of the control points away. */
+  kind: "misses" | "folds" | "torn" | "ungoverned";
+  /** What, where, and what would help. */
+  sentence: string;
+  /** The control points that it is about, by their numbers, the worst first. */
+  control_points: number[];
   amount: number;
-  /** The control points next to the worst place, by their numbers. */
-  near: number[];
-  /** What at least halves it, tried: another temperature, or soft handles; and the part of the shape that is left. */
-  better: number | "soft" | null;
-  left: number;
 }
 
 /** Files to be given to the person: the shape first, then its changed side files (buffers of a .gltf). */
@@ -147,29 +127,35 @@ export interface CallOptions {
 
 /** The core, as the editor sees it. Every promise is rejected with a `CoreError` (one sentence for a person) or an AbortError. */
 export interface Core {
+  /** What it says once and for all. */
+  rules(): Promise<Rules>;
   /**
    * Reads a shape. The open one stays as it is until this one has been read: a refused file changes nothing.
    * `name` is a key of `files`; the others are what it may name.
    */
   open(files: Files, name: string, options?: CallOptions): Promise<Opened>;
+  /** Reads control points for the open shape, of any kind; those of two files are joined: where they are at rest, and where they go. */
+  readSession(files: Files, names: readonly string[]): Promise<ReadSession>;
+  /** The text of a session file; `fitted`: with the frame in which the slot "main" was fitted to its control points. */
+  sessionText(session: SessionDocument, fitted: boolean): Promise<string>;
   /**
-   * Fits weights to the control points (m x 3, file units, m >= 1) and evaluates them at the points of the open shape. A newer fit
-   * of the same slot aborts this one. The fit of the slot "main" is what `deform`, `land` and `save` use.
+   * Fits the weights of a session and evaluates them at the points of the open shape. A newer fit of the same slot aborts this one. The fit
+   * of the slot "main" is what the calls below use: with sessions of the same control points at rest and weights.
    */
-  fit(controlPoints: Float64Array, weights: WeightsSpec, options?: CallOptions & { slot?: Slot }): Promise<Fitted>;
-  /** Deforms by the last fit of the slot; waits for one that is on its way. */
-  deform(motion: Motion, options?: CallOptions & { slot?: Slot }): Promise<Deformed>;
-  /** Where the control points land: cheap, for each one's distance to its target. */
-  land(motion: Motion, options?: CallOptions & { slot?: Slot }): Promise<Landed>;
+  fit(session: SessionDocument, options?: CallOptions & { slot?: Slot }): Promise<Fitted>;
+  /** Deforms by the last fit; waits for one that is on its way. */
+  deform(session: SessionDocument, options?: CallOptions): Promise<Deformed>;
+  /** What happens to the control points: cheap. */
+  report(session: SessionDocument, options?: CallOptions): Promise<Report>;
   /** What is likely bad about a deformation; nothing where all is well. */
-  advise(motion: Motion, options?: CallOptions): Promise<Advice[]>;
-  /** Exact handles for this thread; `controlPoints` (m x 3) and `ownLogits` (m x m) of a fit to the open shape. */
-  handles(controlPoints: Float64Array, ownLogits: Float32Array): Promise<Handles>;
+  advise(session: SessionDocument, options?: CallOptions): Promise<Advice[]>;
+  /** Where to aim, for this thread: for a session that was fitted to the open shape, with the logits of that fit. */
+  handles(session: SessionDocument, ownLogits: Float32Array): Promise<Handles>;
   /**
-   * The open shape's file with the core's double-precision result; `motion` null: as it was read, byte for byte. `name` is the new
+   * The open shape's file with the core's double-precision result; `session` null: as it was read, byte for byte. `name` is the new
    * file's name; changed side files are called after it.
    */
-  save(name: string, motion: Motion | null, options?: CallOptions): Promise<Saved>;
+  save(name: string, session: SessionDocument | null, options?: CallOptions): Promise<Saved>;
   /** `count` places spread over the open shape, count x 3 in file units, by the rule of `neuralmls points` (placement.rs). */
   farthestPoints(count: number, seed?: number, options?: CallOptions): Promise<Float64Array<ArrayBuffer>>;
   /** Ends the workers. */
@@ -180,8 +166,3 @@ export interface Core {
 export class CoreError extends Error {
   override name = "CoreError";
 }
-
-/*
- * Control-point files (JSON and CSV) are read and written in the model layer by docs/control-points.md and its schema, not here:
- * a session file is a control-point JSON file with the editor's own keys ("editor": {...}) beside the three that version 1 knows.
- */

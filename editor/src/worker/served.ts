@@ -6,8 +6,8 @@ export interface Served {
   files: Files;
   /** The shape's name, a key of `files`. */
   name: string;
-  /** A file of control points or a session. */
-  points: { name: string; text: string } | null;
+  /** A file of control points or of a session; not among `files`, where one may have the same name. */
+  points: readonly [string, Uint8Array] | null;
 }
 
 interface Listed {
@@ -23,11 +23,7 @@ export async function servedSession(): Promise<Served | null> {
   ).json();
   const bytes = async ({ name, address }: Listed) =>
     [name, new Uint8Array(await (await got(address)).arrayBuffer())] as const;
-  return {
-    files: new Map(await Promise.all(files.map(bytes))),
-    name: shape,
-    points: points && { name: points.name, text: await (await got(points.address)).text() },
-  };
+  return { files: new Map(await Promise.all(files.map(bytes))), name: shape, points: points && (await bytes(points)) };
 }
 
 async function got(address: string): Promise<Response> {

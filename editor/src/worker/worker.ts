@@ -1,18 +1,17 @@
 /** A worker: the core compiled to WebAssembly, and what it holds for the main thread. */
 
-import initialise, { type Fit, Points, ShapeFile } from "../wasm/neuralmls_wasm.js";
-import { measure, narrow, narrowMaps, relative, widen } from "./coordinates.ts";
+import initialise, { type Bound, Points, ShapeFile } from "../wasm/neuralmls_wasm.js";
+import { measure, relative, widen } from "./coordinates.ts";
 import type { Answer, Ask, Give, Moved, Operation, Question } from "./messages.ts";
-import { CoreError, type Fitted, type Motion, type Opened, type Saved, type Soft, type Stage } from "./protocol.ts";
+import { type Advice, CoreError, type Fitted, type Opened, type Report, type Saved, type SessionDocument, type Stage } from "./protocol.ts";
+import { withSession } from "./sessions.ts";
 
-/** A control point with less of the weight at its own place shares it; the training aims at 0.9. */
-const OWNED = 0.85;
 /** Milliseconds between two messages of progress. */
 const PROGRESS_EVERY = 30;
 
 let file: ShapeFile | undefined;
-let points: { core: Points; dim: number } | undefined;
-let fitted: Fit | undefined;
+let points: Points | undefined;
+let fitted: Bound | undefined;
 
 type Tell = (stage: Stage) => (fraction: number) => void;
 
@@ -31,60 +30,44 @@ const operations: { [O in Operation]: (ask: Ask<O>, tell: Tell) => Give<O> } = {
     }
   },
 
-  load({ x, dim }) {
-    points = { core: new Points(x, dim), dim };
+  load({ x, dim, triangles }) {
+    points = new Points(x, dim, triangles ?? new Uint32Array(0));
     return null;
   },
 
-  fit({ controlPoints, weights: spec }, tell) {
-    const { core, dim } = present(points);
+  fit({ session }, tell) {
     fitted?.free();
     fitted = undefined;
-    const p = narrow(controlPoints, dim);
+    const core = present(points);
     const began = performance.now();
-    const weights =
-      spec.kind === "neural"
-        ? core.train(p, spec.width, BigInt(spec.seed), spec.steps ?? undefined, tell("train"))
-        : core.classic(p, spec.alpha, spec.epsilon);
-    const [loss, steps] = [weights.loss() ?? null, weights.steps()];
+    const map = withSession(session, (session) => core.train(session, tell("train")));
+    const [loss, steps] = [map.loss() ?? null, map.steps()];
     const trained = performance.now();
-    fitted = core.evaluate(weights, tell("evaluate")); // which takes them
-    const evaluated = performance.now();
-    const ownLogits = fitted.own_logits() as Float32Array<ArrayBuffer>;
-    const untilSmall = spec.kind === "neural" && spec.steps === null;
+    fitted = core.bind(map, tell("evaluate")); // which takes it
     return {
-      controlPoints: p.length / dim,
       logits: fitted.logits() as Float32Array<ArrayBuffer>,
-      ownLogits,
+      ownLogits: fitted.own_logits() as Float32Array<ArrayBuffer>,
       loss,
       steps,
-      milliseconds: { train: spec.kind === "neural" ? trained - began : 0, evaluate: evaluated - trained },
-      shared: untilSmall ? sharing(ownLogits, p.length / dim) : [],
+      milliseconds: { train: trained - began, evaluate: performance.now() - trained },
     } satisfies Fitted;
   },
 
-  deform({ motion, maps }, tell) {
-    const { targets, turns, transform, temperature, adherence } = inDimension(motion);
-    const aimed = present(fitted).aim(targets, turns, transform, temperature, adherence);
-    const [positions, turned] = present(fitted).deform(aimed, turns, transform, temperature, maps, tell("deform"));
-    return { positions, maps: turned ?? null } as Moved;
+  deform({ session, maps }, tell) {
+    const [positions, local] = moved(session).deform(maps, tell("deform"));
+    return { positions, maps: local ?? null } as Moved;
   },
 
-  land({ motion }) {
-    const { targets, turns, transform, temperature, adherence } = inDimension(motion);
-    const [places, reason, index, amount, remedy] = present(fitted).land(targets, turns, transform, temperature, adherence);
-    const soft: Soft | null = reason === undefined ? null : { reason, index, amount, remedy };
-    return { places: widen(places, present(points).dim), soft };
+  report({ session }) {
+    return JSON.parse(moved(session).report()) as Report;
   },
 
-  sample({ count }) {
-    return present(file).sample(count) as Float64Array<ArrayBuffer>;
+  advise({ session }) {
+    return JSON.parse(present(points).advise(moved(session))) as Advice[];
   },
 
-  advise({ motion, places }) {
-    const { targets, turns, transform, temperature, adherence } = inDimension(motion);
-    const found = present(fitted).advise(places, targets, turns, transform, temperature, adherence);
-    return found.map(([kind, amount, , first, second, better, left]) => ({ kind, amount, near: [first, second], better, left }));
+  sessionText({ session }) {
+    return moved(session).session();
   },
 
   write({ name, moved }, tell) {
@@ -133,18 +116,11 @@ function describe(shape: ShapeFile, name: string, x: Float64Array<ArrayBuffer>, 
   };
 }
 
-/** Control points whose own weight, the softmax of their row, is small. */
-function sharing(ownLogits: Float32Array, m: number): number[] {
-  return Array.from({ length: m }, (_, i) => i).filter((i) => {
-    const row = ownLogits.subarray(m * i, m * (i + 1));
-    return 1 / row.reduce((sum, logit) => sum + Math.exp(logit - row[i]!), 0) < OWNED;
-  });
-}
-
-function inDimension(motion: Motion): Motion {
-  const { dim } = present(points);
-  const turns = motion.turns && { turns: narrowMaps(motion.turns, dim) };
-  return { ...motion, ...turns, targets: narrow(motion.targets, dim) };
+/** What was fitted, with the targets and settings of a session. */
+function moved(session: SessionDocument): Bound {
+  const bound = present(fitted);
+  withSession(session, (session) => bound.set_session(session));
+  return bound;
 }
 
 function present<T>(value: T | undefined): T {

@@ -3,13 +3,13 @@
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Page } from "@playwright/test";
-import type { Turn } from "../../src/model/turn.ts";
+import type { Orientation } from "../../src/model/orientation.ts";
 import { data, pages, samples } from "./tools.ts";
 
 export interface Compared {
   transform: string;
   temperature: number;
-  adherence: number;
+  handles: "soft" | "auto";
   /** The largest distance of the two, and the largest from the shape at rest, as fractions of the box. */
   worst: number;
   moved: number;
@@ -19,12 +19,12 @@ export interface Compared {
 
 declare global {
   interface Window {
-    compare(name: string, base64: string, p: number[], q: number[], turned: (Turn | undefined)[], weights: object, motions: object[]): Promise<Compared[]>;
+    compare(name: string, base64: string, p: number[], q: number[], oriented: (Orientation | undefined)[], weights: object, motions: object[]): Promise<Compared[]>;
   }
 }
 
 const motions = ["rigid", "similarity", "affine"].flatMap((transform) =>
-  [0.3, 1, 3].flatMap((temperature) => [0, 1].map((adherence) => ({ transform, temperature, adherence }))),
+  [0.3, 1, 3].flatMap((temperature) => ["soft", "auto"].map((handles) => ({ transform, temperature, handles }))),
 );
 
 export interface Case {
@@ -64,11 +64,11 @@ export function published(): Case | null {
 }
 
 /** By every map at each of three temperatures, soft and exact, with the weights of one fit. */
-export async function compare(page: Page, { file, p, q }: Case, weights: object, turned: (Turn | undefined)[] = []): Promise<Compared[]> {
+export async function compare(page: Page, { file, p, q }: Case, weights: object, oriented: (Orientation | undefined)[] = []): Promise<Compared[]> {
   await page.goto(`${pages}/shader.html`);
   await page.waitForFunction(() => window.compare);
   return page.evaluate(
-    ([base64, p, q, turned, weights, motions]) => window.compare("shape.obj", base64, p, q, turned, weights, motions),
-    [file.toString("base64"), p.flat(), q.flat(), turned, weights, motions] as const,
+    ([base64, p, q, oriented, weights, motions]) => window.compare("shape.obj", base64, p, q, oriented, weights, motions),
+    [file.toString("base64"), p.flat(), q.flat(), oriented, weights, motions] as const,
   );
 }

@@ -3,14 +3,19 @@
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { expect, test, type Page } from "@playwright/test";
-import type { Core, WeightsSpec } from "../../src/worker/protocol.ts";
+import type { SettingsEntry } from "../../src/model/document.ts";
+import type { Core, SessionDocument } from "../../src/worker/protocol.ts";
 import { data, difference, neuralmls, pages, samples, vertices } from "./tools.ts";
 
 declare global {
   interface Window {
     core: Core;
+    documentOf(p: number[][], q: number[][], settings?: Given): SessionDocument;
   }
 }
+
+/** Settings, with the parameters of the weights. */
+type Given = Partial<Omit<SettingsEntry, "weights"> & { weights: { kind: string; [parameter: string]: unknown } }>;
 
 const chair = readFileSync(join(samples, "chair.obj"));
 const points: { position: number[]; target: number[] }[] = JSON.parse(
@@ -36,37 +41,36 @@ async function open(page: Page, name: string, bytes: Buffer) {
 }
 
 /** Fits, and saves with the targets moved; gives the file's text. */
-async function bend(page: Page, weights: WeightsSpec, transform: "rigid" | "similarity" | "affine", temperature: number, adherence: number) {
+async function bend(page: Page, given: Given) {
   return page.evaluate(
-    async ([p, q, weights, transform, temperature, adherence]) => {
-      const fitted = await window.core.fit(Float64Array.from(p.flat()), weights);
-      const targets = Float64Array.from(q.flat());
-      const saved = await window.core.save("bent.obj", { targets, transform, temperature, adherence });
-      const { loss, steps, milliseconds, shared } = fitted;
-      return { text: new TextDecoder().decode(saved.files[0]!.bytes), loss, steps, milliseconds, shared };
+    async ([p, q, given]) => {
+      const document = window.documentOf(p, q, given);
+      await window.core.fit(document);
+      const saved = await window.core.save("bent.obj", document);
+      return new TextDecoder().decode(saved.files[0]!.bytes);
     },
-    [points.map((p) => p.position), moved, weights, transform, temperature, adherence] as const,
+    [points.map((p) => p.position), moved, given] as const,
   );
 }
 
-const cases: [string, WeightsSpec, "rigid" | "similarity" | "affine", number, number, string[]][] = [
-  ["neural, rigid", { kind: "neural", width: 1024, seed: 0, steps: null }, "rigid", 1, 1, []],
-  ["another seed and width, affine", { kind: "neural", width: 256, seed: 7, steps: null }, "affine", 1, 1, ["--width", "256", "--seed", "7"]],
-  ["48 steps, similarity", { kind: "neural", width: 1024, seed: 0, steps: 48 }, "similarity", 2, 0, ["--steps", "48", "--no-exact"]],
-  ["classic", { kind: "classic", alpha: 2, epsilon: 0.01 }, "rigid", 1, 1, ["--weights", "inverse-distance", "--alpha", "2", "--epsilon", "0.01"]],
+const cases: [string, Given, string[]][] = [
+  ["neural, rigid", {}, []],
+  ["another seed and width, affine", { weights: { kind: "neural", width: 256, seed: 7, steps: null }, transform: "affine" }, ["--width", "256", "--seed", "7"]],
+  ["48 steps, similarity", { weights: { kind: "neural", width: 1024, seed: 0, steps: 48 }, transform: "similarity", temperature: 2, handles: "soft" }, ["--steps", "48", "--handles", "soft"]],
+  ["inverse distance", { weights: { kind: "inverse-distance", alpha: 2, epsilon: 0.01 } }, ["--weights", "inverse-distance", "--alpha", "2", "--epsilon", "0.01"]],
 ];
 
-for (const [name, weights, transform, temperature, adherence, options] of cases) {
+for (const [name, given, options] of cases) {
   test(`saves what the command line saves: ${name}`, async ({ page }, info) => {
     await open(page, "chair.obj", chair);
-    const { text } = await bend(page, weights, transform, temperature, adherence);
+    const text = await bend(page, given);
     const file = {
       format: "neuralmls-control-points",
       version: 1,
       control_points: points.map(({ position }, i) => ({ name: `p${i}`, position, target: moved[i] })),
     };
     writeFileSync(info.outputPath("points.json"), JSON.stringify(file));
-    const common = ["--transform", transform, "--temperature", `${temperature}`, "-q", "--force"];
+    const common = ["--transform", given.transform ?? "rigid", "--temperature", `${given.temperature ?? 1}`, "-q", "--force"];
     neuralmls("deform", join(samples, "chair.obj"), "--points", info.outputPath("points.json"), "-o", info.outputPath("bent.obj"), ...common, ...options);
     const expected = readFileSync(info.outputPath("bent.obj"), "utf8");
     expect(difference(vertices(expected), vertices(chair.toString()))).toBeGreaterThan(0.05);
@@ -103,9 +107,9 @@ test("a glTF is saved with its buffer, which is called after it", async ({ page 
         ["points.bin", new Uint8Array(Float32Array.from(numbers).buffer)],
       ]);
       const { namedFiles, warnings } = await window.core.open(files, "shape.gltf");
-      await window.core.fit(Float64Array.from([0, 0, 0]), { kind: "classic", alpha: 1, epsilon: 0 });
-      const motion = { targets: Float64Array.from([0, 0.5, 0]), transform: "rigid", temperature: 1, adherence: 0 } as const;
-      const saved = await window.core.save("bent.gltf", motion);
+      const document = window.documentOf([[0, 0, 0]], [[0, 0.5, 0]], { weights: { kind: "inverse-distance", alpha: 1, epsilon: 0 } });
+      await window.core.fit(document);
+      const saved = await window.core.save("bent.gltf", document);
       const missing = await window.core.open(new Map([["shape.gltf", files.get("shape.gltf")!]]), "shape.gltf").catch((error) => error.message);
       return { namedFiles, warnings, missing, files: saved.files.map(({ name, bytes }) => ({ name, bytes: [...bytes] })) };
     },
@@ -133,7 +137,7 @@ test("a refused file is one sentence, and leaves the open shape as it is", async
   ] as const) {
     await expect(open(page, name, Buffer.from(text)), name).rejects.toThrow(new RegExp(`CoreError: ${name}: .*${words === name ? "" : words}`));
   }
-  const { text } = await bend(page, { kind: "classic", alpha: 1, epsilon: 0 }, "rigid", 1, 1);
+  const text = await bend(page, { weights: { kind: "inverse-distance", alpha: 1, epsilon: 0 } });
   expect(vertices(text).length).toBe(vertices(chair.toString()).length);
 });
 
@@ -141,21 +145,20 @@ test("a newer fit takes the place of an older one, and an aborted one ends at on
   await open(page, "chair.obj", chair);
   const [older, newer, stopped, afterwards] = await page.evaluate(async (p) => {
     const { core } = window;
-    const controlPoints = Float64Array.from(p.flat());
-    const weights = { kind: "neural", width: 4096, seed: 0, steps: 100_000 } as const;
+    const endless = window.documentOf(p, p, { weights: { kind: "neural", width: 4096, seed: 0, steps: 100_000 } });
+    const quick = window.documentOf(p, p, { weights: { kind: "inverse-distance", alpha: 1, epsilon: 0 } });
     const told: number[] = [];
-    const slow = core.fit(controlPoints, weights, { progress: (_, fraction) => told.push(fraction) }).catch((error) => error.name);
+    const slow = core.fit(endless, { progress: (_, fraction) => told.push(fraction) }).catch((error) => error.name);
     while (told.length < 2) await new Promise((resolve) => setTimeout(resolve, 20));
-    const classic = { kind: "classic", alpha: 1, epsilon: 0 } as const;
-    const fast = await core.fit(controlPoints, classic);
+    const fast = await core.fit(quick);
     const older = await slow;
     const abort = new AbortController();
     const began = performance.now();
-    const third = core.fit(controlPoints, weights, { signal: abort.signal }).catch((error) => error.name);
+    const third = core.fit(endless, { signal: abort.signal }).catch((error) => error.name);
     setTimeout(() => abort.abort(), 200);
     const name = await third;
-    const fourth = await core.fit(controlPoints, classic);
-    return [older, fast.controlPoints, [name, performance.now() - began], fourth.controlPoints] as const;
+    const fourth = await core.fit(quick);
+    return [older, Math.sqrt(fast.ownLogits.length), [name, performance.now() - began], Math.sqrt(fourth.ownLogits.length)] as const;
   }, points.map((p) => p.position));
   expect(older).toBe("AbortError");
   expect(newer).toBe(points.length);
@@ -166,25 +169,24 @@ test("a newer fit takes the place of an older one, and an aborted one ends at on
 
 test("the control points land where the core says, and places are found for new ones", async ({ page }) => {
   await open(page, "chair.obj", chair);
-  const { landed, deformed, exact, places, again } = await page.evaluate(
+  const { soft, distances, exact, places, again } = await page.evaluate(
     async ([p, q]) => {
-      const { core } = window;
-      await core.fit(Float64Array.from(p!.flat()), { kind: "neural", width: 1024, seed: 0, steps: null });
-      const motion = { targets: Float64Array.from(q!.flat()), transform: "rigid", temperature: 1, adherence: 0 } as const;
-      const deformed = await core.deform(motion);
+      const { core, documentOf } = window;
+      await core.fit(documentOf(p!, q!));
+      const soft = await core.report(documentOf(p!, q!, { handles: "soft" }));
       return {
-        landed: [...(await core.land(motion)).places],
-        deformed: [...deformed.landed.places],
-        exact: [...(await core.land({ ...motion, adherence: 1 })).places],
+        soft: soft.places,
+        distances: soft.distances,
+        exact: (await core.report(documentOf(p!, q!))).places,
         places: [...(await core.farthestPoints(12))],
         again: [...(await core.farthestPoints(12))],
       };
     },
     [points.map((p) => p.position), moved],
   );
-  expect(landed).toEqual(deformed);
-  expect(difference(landed, moved.flat())).toBeLessThan(0.05);
-  expect(difference(landed, moved.flat())).toBeGreaterThan(1e-4);
+  expect(difference(soft, moved.flat())).toBeLessThan(0.05);
+  expect(difference(soft, moved.flat())).toBeGreaterThan(1e-4);
+  distances.forEach((away, i) => expect(away).toBeCloseTo(Math.hypot(...moved[i].map((c, k) => c - soft[3 * i + k])), 12));
   expect(difference(exact, moved.flat())).toBeLessThan(1e-9);
   expect(places).toHaveLength(36);
   expect(again).toEqual(places);

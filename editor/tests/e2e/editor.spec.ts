@@ -90,7 +90,7 @@ test("a mirrored move moves the twin too", async ({ editor }) => {
   expect(of(after.points, b).target[0]).toBeCloseTo(of(before.points, b).target[0] - 0.05, 6);
 });
 
-test("the gizmo turns a control point, its twin mirrored: the file is that of the command line", async ({ editor }, info) => {
+test("the gizmo rotates a control point, its twin mirrored: the file is that of the command line", async ({ editor }, info) => {
   await openSample(editor, "Chair");
   await fitted(editor);
   await editor.locator("label", { hasText: /^X$/ }).click();
@@ -110,17 +110,17 @@ test("the gizmo turns a control point, its twin mirrored: the file is that of th
   await editor.mouse.down();
   for (let degrees = 60; degrees <= 110; degrees += 5) await editor.mouse.move(...grip(degrees));
   await editor.waitForTimeout(300); // the frame after
-  await editor.screenshot({ path: picture("turned.png") });
+  await editor.screenshot({ path: picture("oriented.png") });
   await editor.mouse.up();
   const after = await session(editor);
-  const turned = of(after, "armrest-left");
-  const { turn } = turned;
-  expect(turn!.degrees).toBeCloseTo(50, 0);
-  expect(turned).toEqual({ ...of(before, "armrest-left"), turn });
-  await expect(editor.getByText(`Turned by ${turn!.degrees.toFixed(1)}°`)).toBeVisible();
-  const twin = of(after, "armrest-right").turn!;
-  expect(twin.degrees).toBe(turn!.degrees);
-  twin.axis.forEach((c, k) => expect(c).toBeCloseTo(k === 0 ? turn!.axis[k]! : -turn!.axis[k]!, 12));
+  const oriented = of(after, "armrest-left");
+  const { orientation } = oriented;
+  expect(orientation!.degrees).toBeCloseTo(50, 0);
+  expect(oriented).toEqual({ ...of(before, "armrest-left"), orientation });
+  await expect(editor.getByText(`Rotated by ${orientation!.degrees.toFixed(1)}°`)).toBeVisible();
+  const twin = of(after, "armrest-right").orientation!;
+  expect(twin.degrees).toBe(orientation!.degrees);
+  twin.axis.forEach((c, k) => expect(c).toBeCloseTo(k === 0 ? orientation!.axis[k]! : -orientation!.axis[k]!, 12));
 
   // The whole drag is one step of undo.
   await editor.keyboard.press("Control+z");
@@ -134,7 +134,9 @@ test("the gizmo turns a control point, its twin mirrored: the file is that of th
   const bent = info.outputPath("bent.obj");
   command("deform", join(samples, "chair.obj"), "--points", info.outputPath("session.json"), "-o", bent, "-q");
   const right = vertices(readFileSync(bent, "utf8"));
-  writeFileSync(info.outputPath("plain.json"), JSON.stringify({ ...JSON.parse(points.bytes.toString()), control_points: after.points }));
+  const document = JSON.parse(points.bytes.toString());
+  const unoriented = document.control_points.map(({ rotation: _, ...entry }: { rotation?: object }) => entry);
+  writeFileSync(info.outputPath("plain.json"), JSON.stringify({ ...document, control_points: unoriented }));
   const plain = info.outputPath("plain.obj");
   command("deform", join(samples, "chair.obj"), "--points", info.outputPath("plain.json"), "-o", plain, "-q");
   expect(difference(right, vertices(readFileSync(plain, "utf8")))).toBeGreaterThan(0.01);
@@ -226,7 +228,8 @@ function kept(page: import("@playwright/test").Page, name: string, height: numbe
         request.onsuccess = () => {
           const all = request.result.transaction("work").objectStore("work").get("head");
           all.onsuccess = () => {
-            const { points } = (all.result as { session?: { points: { name: string; target: number[] }[] } })?.session ?? { points: [] };
+            const { session } = (all.result as { session: string } | undefined) ?? { session: "" };
+            const points: { name: string; target: number[] }[] = session === "" ? [] : JSON.parse(session).control_points;
             resolve(points.some((point) => point.name === name && point.target[1] === height));
             request.result.close();
           };
@@ -261,6 +264,46 @@ test("hostile files are one sentence each, and leave the open shape", async ({ e
     await expect(editor.locator(".file-name strong")).toHaveText("chair.obj");
   }
   expect(await editor.evaluate(() => [...neuralmls.readback()!])).toEqual(before);
+});
+
+test("control points of any kind open, and what is wrong with them is said as the command line says it", async ({ editor }) => {
+  await openSample(editor, "Chair");
+  await fitted(editor);
+  const before = await session(editor);
+  const [a, b] = control_points.slice(0, 2).map(({ position }) => position);
+  const text = (document: object) => Buffer.from(JSON.stringify({ format: "neuralmls-control-points", version: 2, control_points: [{ name: "a", position: a }], ...document }));
+  const refused: [string, Buffer, RegExp][] = [
+    ["cold.json", text({ settings: { temperature: -1 } }), /cold\.json: .*temperature/],
+    ["half.csv", Buffer.from("name,x,y,z,target_y\na,0,0,0,1\n"), /half\.csv: /],
+    ["flat.csv", Buffer.from("name,x,y\na,0,0\n"), /flat\.csv: /],
+  ];
+  for (const [name, bytes, says] of refused) {
+    await drop(editor, { name, bytes });
+    const toast = editor.getByRole("alert").filter({ hasText: says });
+    await expect(toast, name).toBeVisible();
+    await toast.getByRole("button", { name: "Dismiss" }).click();
+    expect(await session(editor)).toEqual(before);
+  }
+  // Landmarks of another tool in two files: where they are, and where they go. One has no partner.
+  const fcsv = (...rows: [string, number[]][]) =>
+    Buffer.from(["# Markups fiducial file version = 4.11", "# CoordinateSystem = LPS", "# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID", ...rows.map(([label, at], i) => `${i},${at.join()},0,0,0,1,1,1,0,${label},,`), ""].join("\n"));
+  const up = [a[0], a[1] + 0.1, a[2]];
+  await drop(editor, { name: "dst.fcsv", bytes: fcsv(["two", b], ["one", up]) }, { name: "src.fcsv", bytes: fcsv(["one", a], ["two", b], ["three", [0, 0.5, 0]]) });
+  await expect(editor.getByText("src.fcsv says where control points are at rest, dst.fcsv where they go")).toBeVisible();
+  await expect(editor.getByText(/src\.fcsv and dst\.fcsv: .*three/)).toBeVisible();
+  await editor.screenshot({ path: picture("landmarks.png") });
+  await fitted(editor);
+  const joined = (await session(editor)).points;
+  expect(joined.find(({ name }) => name === "one")).toMatchObject({ position: a, target: up });
+  expect(joined.find(({ name }) => name === "two")).toMatchObject({ position: b, target: b });
+  // Weights that are not fitted here: said in one sentence, and kept as they are.
+  await drop(editor, { name: "shape.json", bytes: text({ settings: { weights: { kind: "shape-aware" } }, mine: [1, 2] }) });
+  await expect(editor.locator(".fit.failed")).toContainText(/shape-aware/i);
+  await editor.screenshot({ path: picture("shape-aware.png") });
+  const saved = JSON.parse((await save(editor, /^Control points/)).bytes.toString());
+  expect(saved).toMatchObject({ version: 2, settings: { weights: { kind: "shape-aware" } }, mine: [1, 2] });
+  await editor.locator("label", { hasText: /^Neural$/ }).click();
+  await fitted(editor);
 });
 
 test("the keyboard alone opens, places, chooses, moves, takes back and saves", async ({ editor }) => {

@@ -42,7 +42,7 @@ const side = Math.max(...[0, 1, 2].map((k) => {
   return Math.max(...axis) - Math.min(...axis);
 }));
 
-const exact = (editor: Page) => editor.getByRole("switch", { name: "Exact handles" });
+const exact = (editor: Page) => editor.getByRole("switch", { name: "Handles arrive" });
 
 test("while a control point is dragged the surface stays under it, and with the switch off it stays behind", async ({ editor }) => {
   await openOnVertices(editor);
@@ -72,17 +72,17 @@ test("while a control point is dragged the surface stays under it, and with the 
   expect(await editor.evaluate(() => neuralmls.state().fit)).toEqual(fit);
 });
 
-test("what is saved with half of the adherence is what the command line makes of the session", async ({ editor }, info) => {
+test("what is saved with half of the way is what the command line makes of the session", async ({ editor }, info) => {
   await openSample(editor, "Chair");
   await fitted(editor);
   const before = await editor.evaluate(() => [...neuralmls.readback()!]);
-  const field = editor.getByRole("textbox", { name: "Adherence" });
-  await field.fill("7"); // is no adherence
+  const field = editor.getByRole("textbox", { name: "How closely" });
+  await field.fill("7"); // is no part of it
   await field.press("Enter");
-  expect((await session(editor)).settings.adherence).toBe(1);
+  expect((await session(editor)).settings.handles).toBe("auto");
   await field.fill("0.5");
   await field.press("Enter");
-  expect((await session(editor)).settings.adherence).toBe(0.5);
+  expect((await session(editor)).settings.handles).toBe(0.5);
   const saved = await save(editor, /^Bent OBJ/);
   const points = await save(editor, /^Control points/);
   writeFileSync(info.outputPath("session.json"), points.bytes);
@@ -94,11 +94,11 @@ test("what is saved with half of the adherence is what the command line makes of
   const right = bend();
   expect(difference(right, vertices(saved.bytes.toString()))).toBeLessThan(1e-5);
   expect(difference(right, await editor.evaluate(() => [...neuralmls.readback()!]))).toBeLessThan(1e-4);
-  for (const other of [bend("--exact"), bend("--no-exact")]) expect(difference(right, other)).toBeGreaterThan(1e-3);
+  for (const other of [bend("--handles", "auto"), bend("--handles", "soft")]) expect(difference(right, other)).toBeGreaterThan(1e-3);
   // And the reverse: the editor takes up what the file says.
   await exact(editor).click();
   await drop(editor, { name: "session.json", bytes: points.bytes });
-  await expect(editor.getByRole("textbox", { name: "Adherence" })).toHaveValue("0.5");
+  await expect(editor.getByRole("textbox", { name: "How closely" })).toHaveValue("0.5");
   await fitted(editor);
   expect(difference(before, await editor.evaluate(() => [...neuralmls.readback()!]))).toBeGreaterThan(1e-4);
 });
@@ -115,7 +115,7 @@ test("control points that own little are left soft, with a line that says what w
   await expect(line).toBeVisible();
   await line.scrollIntoViewIfNeeded();
   await editor.screenshot({ path: picture("soft.png") });
-  const [, helps] = /At temperature (\S+) they arrive\.$/.exec(await line.innerText())!;
+  const [, helps] = /at temperature (\S+) they arrive/.exec(await line.innerText())!;
   await temperature.fill(helps);
   await temperature.press("Enter");
   await expect(line).toHaveCount(0);

@@ -1,5 +1,17 @@
+/** What the shader has of the core: where to aim, and the map that fits all control points with equal weights. */
+
 import { describe, expect, it } from "vitest";
-import { anchor, bestRotation, IDENTITY, type Matrix } from "../../src/shader/anchor.ts";
+import { type SessionDocument, toDocument } from "../../src/model/document.ts";
+import type { Aim } from "../../src/model/handles.ts";
+import { type Orientation, orientationsOf, rotationOf } from "../../src/model/orientation.ts";
+import type { Settings } from "../../src/model/settings.ts";
+import { pointAt } from "../../src/model/vec3.ts";
+import { createHandles } from "../../src/worker/handles.ts";
+import { defaults, EMPTY_SESSION } from "./core.ts";
+
+type Matrix = number[];
+const IDENTITY: Matrix = [1, 0, 0, 0, 1, 0, 0, 0, 1];
+const soft: Settings = { ...defaults, handles: "soft" };
 
 /** Numbers from a seed. */
 function random(seed: number): () => number {
@@ -16,11 +28,29 @@ function rotation([w, x, y, z]: number[]): Matrix {
   return [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)];
 }
 
+function documentOf(p: readonly number[], dim: 1 | 2 | 3): SessionDocument {
+  const points = Array.from({ length: p.length / 3 }, (_, i) => {
+    const position = pointAt(p, i);
+    return { id: i, name: `p${i}`, position, target: position, weight: 1, locked: false };
+  });
+  return toDocument({ ...EMPTY_SESSION, points }, dim);
+}
+
+/** The anchor of control points `p` that are moved to `q`, m x 3 each. */
+function anchor(p: readonly number[], q: readonly number[], oriented: readonly (Orientation | undefined)[] = [], dim: 1 | 2 | 3 = 3): Aim {
+  const m = p.length / 3;
+  const own = Float32Array.from({ length: m * m }, (_, at) => (at % (m + 1) === 0 ? 6 : 0));
+  const handles = createHandles(documentOf(p, dim), dim, own);
+  const aim = handles.aim(Float64Array.from(q), orientationsOf(oriented), soft);
+  handles.free();
+  return aim;
+}
+
 const apply = (m: Matrix, points: number[]): number[] =>
   points.map((_, at) => [0, 1, 2].reduce((sum, k) => sum + m[3 * (at % 3) + k] * points[3 * Math.floor(at / 3) + k], 0));
-const close = (found: ArrayLike<number>, expected: ArrayLike<number>): void =>
-  // The rule itself lets the identity count for 1e-9 against what the control points say.
-  Array.from(expected).forEach((e, i) => expect(found[i]).toBeCloseTo(e, 7));
+const close = (found: ArrayLike<number>, expected: ArrayLike<number>, digits = 6): void =>
+  // It goes to the shader in single precision.
+  Array.from(expected).forEach((e, i) => expect(found[i]).toBeCloseTo(e, digits));
 
 describe("the anchor", () => {
   const next = random(7);
@@ -35,7 +65,7 @@ describe("the anchor", () => {
   });
 
   it("of an affine motion is its linear part", () => {
-    const [p, map] = [points(6), points(3) as Matrix];
+    const [p, map] = [points(6), points(3)];
     close(anchor(p, apply(map, p)).linear, map);
   });
 
@@ -53,16 +83,59 @@ describe("the anchor", () => {
     }
   });
 
+  it("of one that is oriented is as that", () => {
+    const orientation: Orientation = { axis: [1, -2, 0.5], degrees: 75, scale: 1.5 };
+    const found = anchor([1, 2, 3], [1, 2, 3], [orientation]);
+    close(found.rotation, rotationOf(orientation));
+    close(found.linear, rotationOf(orientation).map((e) => 1.5 * e));
+    expect(found.scale).toBeCloseTo(1.5, 9);
+  });
+
   it("is never a reflection", () => {
     const p = points(6);
     const [a, b, c, d, e, f, g, h, i] = anchor(p, p.map((v, at) => (at % 3 === 0 ? -v : v))).rotation;
-    expect(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)).toBeCloseTo(1, 9);
+    expect(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)).toBeCloseTo(1, 6);
   });
 
   it("uses the rotation that no random one beats", () => {
-    const c = points(3) as Matrix;
-    const value = (r: Matrix): number => [0, 1, 2].reduce((sum, i) => sum + [0, 1, 2].reduce((s, k) => s + r[3 * i + k] * c[3 * k + i], 0), 0);
-    const best = value(bestRotation(c));
-    for (let i = 0; i < 200; i++) expect(value(rotation([next(), next(), next(), next()]))).toBeLessThanOrEqual(best + 1e-12);
+    const [p, q] = [points(6), points(6)];
+    const centred = (v: number[]): number[] => v.map((c, at) => c - v.reduce((sum, e, k) => sum + (k % 3 === at % 3 ? e / 6 : 0), 0));
+    const [a, b] = [centred(p), centred(q)];
+    // tr(R C) is the sum of the products of the targets with the rotated control points.
+    const value = (r: ArrayLike<number>): number => apply(Array.from(r), a).reduce((sum, c, at) => sum + c * b[at], 0);
+    const best = value(anchor(p, q).rotation);
+    for (let i = 0; i < 200; i++) expect(value(rotation([next(), next(), next(), next()]))).toBeLessThanOrEqual(best + 1e-6);
+  });
+
+  it("of a shape in the plane stays in it", () => {
+    const p = [0, 0, 0, 1, 0, 0, 0, 2, 0];
+    const found = anchor(p, [0, 0, 0, 0, 1, 0, -2, 0, 0], [], 2);
+    close(found.rotation, [0, -1, 0, 1, 0, 0, 0, 0, 1]);
+    close(found.linear, found.rotation);
+  });
+});
+
+describe("handles", () => {
+  const p = [0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3];
+  const q = [0, 0, 0, 1, 0.5, 0, 0, 2, 0, 0.5, 0, 3];
+
+  it("that are soft aim at their targets; others past them, and a change of the settings is heard", () => {
+    const own = Float32Array.from({ length: 16 }, (_, at) => (at % 5 === 0 ? 3 : 0));
+    const handles = createHandles(documentOf(p, 3), 3, own);
+    const aim = (settings: Settings) => [...handles.aim(Float64Array.from(q), undefined, settings).targets];
+    const [auto, near, half] = [aim(defaults), aim(soft), aim({ ...defaults, handles: 0.5 })];
+    expect(near).toEqual(q);
+    const farthest = (found: number[]) => Math.max(...found.map((c, at) => Math.abs(c - q[at])));
+    expect(farthest(auto)).toBeGreaterThan(1e-3);
+    expect(farthest(half)).toBeGreaterThan(1e-4);
+    expect(farthest(half)).toBeLessThan(farthest(auto));
+    expect(aim(defaults)).toEqual(auto);
+    handles.free();
+  });
+
+  it("know how far the nearest other one is", () => {
+    const handles = createHandles(documentOf(p, 3), 3, new Float32Array(16));
+    close(handles.squares, [1, 1, 4, 9]);
+    handles.free();
   });
 });

@@ -1,7 +1,8 @@
 import { describe, expect, it } from "vitest";
-import { addPoint, History, moveSelected, nudge, removeSelected, rename, select, set, toggleLock } from "../../src/commands/index.ts";
-import { EMPTY_SESSION, type Session } from "../../src/model/session.ts";
+import { addPoint, History, moveSelected, nudge, removeSelected, rename, select, set, setWeights, toggleLock } from "../../src/commands/index.ts";
+import type { Session } from "../../src/model/session.ts";
 import { add, type Vec3 } from "../../src/model/vec3.ts";
+import { EMPTY_SESSION } from "./core.ts";
 
 const box = { centre: [0, 0, 0] as Vec3, half: 1 };
 const at = (x: number, y = 0, z = 0): Vec3 => [x, y, z];
@@ -25,8 +26,10 @@ describe("history", () => {
       rename(1, "head"),
       toggleLock([1]),
       set("temperature", 0.5),
-      set("adherence", 0),
-      set("kind", "classic"),
+      set("handles", 0.5),
+      set("kind", "inverse-distance"),
+      setWeights("inverse-distance", { alpha: 2 }),
+      setWeights("neural", { seed: 3 }),
       select([1, 2]),
       removeSelected(),
     ];

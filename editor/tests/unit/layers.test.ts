@@ -24,6 +24,16 @@ const files = readdirSync(source, { recursive: true, encoding: "utf8" })
   .map((name) => name.replaceAll("\\", "/"))
   .filter((name) => /\.tsx?$/.test(name) && !name.endsWith(".d.ts") && !name.startsWith("wasm/"));
 
+/** What a file imports. */
+function importsOf(name: string): string[] {
+  const text = readFileSync(join(source, name), "utf8");
+  return [...text.matchAll(/(?:from|import)\s*\(?\s*"([^"]+)"/g)].map((match) => match[1]);
+}
+
+/** The file that a relative import means. */
+const target = (name: string, path: string): string =>
+  relative(source, resolve(dirname(join(source, name)), path)).replaceAll("\\", "/");
+
 describe("imports run downward only", () => {
   it("every file belongs to a layer", () => {
     const strangers = files.filter((name) => !ROOTS.includes(name) && !(name.split("/")[0] in LAYERS));
@@ -31,14 +41,27 @@ describe("imports run downward only", () => {
     expect(files.length).toBeGreaterThan(30);
   });
 
+  it("no file imports itself by way of others, not even a type", () => {
+    const imports = new Map(files.map((name) => [name, importsOf(name).filter((path) => path.startsWith(".")).map((path) => target(name, path))]));
+    const circles: string[] = [];
+    const done = new Set<string>();
+    const visit = (name: string, path: string[]): void => {
+      if (path.includes(name)) return void circles.push([...path.slice(path.indexOf(name)), name].join(" -> "));
+      if (done.has(name)) return;
+      for (const next of imports.get(name) ?? []) visit(next, [...path, name]);
+      done.add(name);
+    };
+    for (const name of files) visit(name, []);
+    expect(circles).toEqual([]);
+    expect([...imports.values()].flat().length).toBeGreaterThan(100);
+  });
+
   it.each(files.filter((name) => !ROOTS.includes(name)))("%s", (name) => {
     const folder = name.split("/")[0];
     const { folders, packages } = LAYERS[folder];
-    const text = readFileSync(join(source, name), "utf8");
-    const imported = [...text.matchAll(/(?:from|import)\s*\(?\s*"([^"]+)"/g)].map((match) => match[1]);
-    for (const path of imported) {
+    for (const path of importsOf(name)) {
       if (path.startsWith(".")) {
-        const to = relative(source, resolve(dirname(join(source, name)), path)).replaceAll("\\", "/").split("/")[0];
+        const to = target(name, path).split("/")[0];
         expect([folder, ...folders], `${name} imports ${path}`).toContain(to);
       } else {
         expect(packages, `${name} imports ${path}`).toContain(path.split("/")[0]);

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { addPoint, addPoints, History, moveSelected, nudge, pair, placeAnew, put, resetTargets, select, setMirror, toggleLock, unpair } from "../../src/commands/index.ts";
-import { EMPTY_SESSION } from "../../src/model/session.ts";
 import type { Vec3 } from "../../src/model/vec3.ts";
+import { EMPTY_SESSION } from "./core.ts";
 
 const box = { centre: [10, 0, 0] as Vec3, half: 1 };
 

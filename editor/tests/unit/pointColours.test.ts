@@ -1,5 +1,5 @@
 import { expect, test } from "vitest";
-import type { OpenedShape } from "../../src/viewport/drawn.ts";
+import type { OpenedShape } from "../../src/viewport/openedShape.ts";
 import { pointColours } from "../../src/viewport/appearance.ts";
 
 const coloured = (type: string, ...rows: string[]): Uint8Array =>
