@@ -14,8 +14,7 @@ from neuralmls.cli.stages import Stages
 from neuralmls.errors import ArgumentError, NeuralMLSError
 
 if TYPE_CHECKING:
-    from neuralmls.map import Map
-    from neuralmls.session import Session
+    from neuralmls.session import Map, Session
     from neuralmls.shape import Shape
 
 
@@ -128,7 +127,7 @@ def _session(
     points: Path | None, targets: Path | None, by_order: bool, saved: Path | None
 ) -> tuple[Session, Map | None]:
     """The session as files have it, and the map that was fitted already."""
-    from neuralmls.map import Map
+    from neuralmls.session import Map
 
     if points is None and saved is None:
         raise ArgumentError("--points: expected a file of control points, or a fitted map with --map")
