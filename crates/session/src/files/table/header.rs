@@ -10,7 +10,7 @@ const TARGETS: [&str; 7] = ["target", "tgt", "destination", "dest", "dst", "to",
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// What a column holds.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Known {
     /// Names.
     Name(&'static str),
@@ -25,13 +25,6 @@ pub enum Known {
     },
     /// Something else.
     Other,
-}
-
-impl Known {
-    /// Whether it is read.
-    pub fn is_column(self) -> bool {
-        self != Known::Other
-    }
 }
 
 /// What a title in small letters means: `x`, `target_x`, `Target X (mm)`, `x_target`, `targetX`, `destination.x`.
