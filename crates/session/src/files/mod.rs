@@ -6,7 +6,7 @@
 //! | `table` | CSV and its kin: ours, BigWarp's, OpenSim Creator's, CloudCompare's, NumPy's |
 //! | `slicer` | 3D Slicer's `.mrk.json` and `.fcsv` |
 //! | `picked_points` | MeshLab's `.pp` |
-//! | `idav`, `land`, `tag`, `tps`, `morphologika` | morphometrics and neuroimaging |
+//! | `idav`, `land`, `tag`, `tps`, `morphologika`, `face_points` | morphometrics, neuroimaging, faces |
 //! | `landmarks` | what they share: landmarks, some of them missing, become control points |
 
 use crate::error::Error;
@@ -14,6 +14,7 @@ use crate::session::Read;
 use crate::text::{number, shown};
 
 mod csv_text;
+mod face_points;
 mod idav;
 mod join;
 pub(crate) mod json;
@@ -65,6 +66,8 @@ pub fn read(bytes: &[u8], name: &str) -> Result<Read, Error> {
         tag::read(text)
     } else if idav::is(first) {
         idav::read(text)
+    } else if face_points::is(first) {
+        face_points::read(text)
     } else if tps::is(first) {
         tps::read(text)
     } else if slicer::is_fiducials(text) || ends(".fcsv") {
