@@ -53,9 +53,8 @@ impl Deformer {
         let dim = x.shape()[1];
         let transform = self::transform(transform)?;
         let (x, p, logits) = (x.as_slice()?, p.as_slice()?, logits.as_slice()?);
-        let (x, logits) = (copy_of(x), copy_of(logits));
-        let inner = neuralmls_core::Deformer::of_logits(x, dim, p, logits, transform)
-            .map_err(|error| from_core(error, None))?;
+        let bound = || neuralmls_core::Deformer::of_logits(copy_of(x)?, dim, p, copy_of(logits)?, transform);
+        let inner = bound().map_err(|error| from_core(error, None))?;
         Ok(Deformer { inner, dim })
     }
 
@@ -79,7 +78,7 @@ impl Deformer {
                 Some(tree) => network.0.logits_of_tree(&tree.0, report)?,
                 None => network.0.logits(x, report)?,
             };
-            neuralmls_core::Deformer::of_logits(copy_of(x), dim, p, logits, transform)
+            neuralmls_core::Deformer::of_logits(copy_of(x)?, dim, p, logits, transform)
         })?;
         Ok(Deformer { inner, dim })
     }

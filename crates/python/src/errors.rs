@@ -1,6 +1,6 @@
 //! Errors of the crates as exceptions of the package.
 
-use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError};
 use pyo3::prelude::*;
 
 /// An exception of `neuralmls.errors`.
@@ -23,6 +23,7 @@ pub(crate) fn from_core(error: neuralmls_core::Error, cause: Option<PyErr>) -> P
     match (error, cause) {
         (neuralmls_core::Error::Cancelled, Some(cause)) => cause,
         (neuralmls_core::Error::Cancelled, None) => PyKeyboardInterrupt::new_err(()),
+        (error @ neuralmls_core::Error::Memory, _) => PyMemoryError::new_err(error.to_string()),
         (error, _) => argument(error.to_string()),
     }
 }
