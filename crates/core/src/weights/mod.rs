@@ -119,7 +119,7 @@ impl Weights {
             Weights::Neural(trained) | Weights::ShapeAware(trained) => {
                 trained.network.logits_of_tree(tree, progress)
             }
-            Weights::InverseDistance(function) => function.logits(&tree.given(), progress),
+            Weights::InverseDistance(function) => function.logits(&tree.given()?, progress),
         }
     }
 }
