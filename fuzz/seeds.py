@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 POSITIONS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0.5)]
+SESSIONS = Path(__file__).parent.parent / "tests" / "sessions"
 FACES = [(0, 1, 2), (0, 2, 3)]
 
 
@@ -24,6 +25,7 @@ def obj() -> dict[str, bytes]:
 def off() -> dict[str, bytes]:
     return {
         "plain": b"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0.5\n3 0 1 2\n3 0 2 3 255 0 0\n",
+        "lines": b"NOFF\n3 1 0\n0 0\n0 0 0 1\n1 0 0\n0 0\n1\n0 1 0 0 0 1\n3\n0 1\n2\n",
         "all": b"# c\r\nSTCNOFF 3 1 0\r\n\r\n0 0 0 0 0 1 1 0 0 1 0 0\r\n1 0 0 0 0 1 1 0 0 1 0 0 # c\r\n"
         b"0 1 0 0 0 1 1 0 0 1 0 0\r\n3 0 1 2\r\n",
     }
@@ -33,6 +35,7 @@ def table() -> dict[str, bytes]:
     return {
         "xyz": b"1 2 3 255 0 0\n4 5.5 6 0 0 0\n",
         "csv": b'name,x,y,z,nx,ny,nz\n"a, b",1,2,3,0,0,1\nc,4,5,6,0,1,0\n',
+        "cloud": b"//X Y Z Scalar field Nx Ny Nz\n1\n1 2 3 0.5 0 0 1\n",
         "count": b"2\nwater\nO 1 2 3\nH 4 5 6\n",
         "flat": b"//X Y\n1;2\n3;4\n",
         "line": b"1\n2.5e0\n",
@@ -59,7 +62,7 @@ def ply() -> dict[str, bytes]:
         "ascii": header("ascii") + ascii_rows.encode(),
         "little": header("binary_little_endian") + binary("<"),
         "big": header("binary_big_endian") + binary(">"),
-        "double": b"ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nproperty double y\nproperty double z\n"
+        "double": b"ply\nformat ascii 1.0\nCreated by hand\nelement vertex 1\nproperty double x\nproperty double y\nproperty double z\n"
         b"property list uchar float tags\nend_header\n1 2 3 2 0.5 0.25\n",
     }
 
@@ -76,6 +79,8 @@ def stl() -> dict[str, bytes]:
     return {
         "ascii": solid.encode(),
         "two": (solid + solid).encode(),
+        "mark": b"\xef\xbb\xbf" + solid.encode(),
+        "open": b"a header".ljust(84, b"\0") + records,
         "binary": b"a header".ljust(80, b"\0") + struct.pack("<I", len(FACES)) + records,
     }
 
@@ -135,12 +140,19 @@ def npy() -> dict[str, bytes]:
     return {
         "f4": array("<f4", (2, 3), struct.pack("<6f", *range(6))),
         "f8": array(">f8", (3, 2), struct.pack(">6d", *range(6)), fortran=True),
+        "image": array("<f4", (2, 2, 3), struct.pack("<12f", *range(12)), fortran=True),
         "i4": array("<i4", (2, 1), struct.pack("<2i", 1, 2)),
     }
 
 
+def session() -> dict[str, bytes]:
+    """The files of tests/sessions."""
+    files = [path for path in SESSIONS.glob("*/*") if path.stat().st_size < 4096]
+    return {f"{path.parent.name}-{path.name}": path.read_bytes() for path in files}
+
+
 def main(folder: Path) -> None:
-    for make in (obj, off, table, ply, stl, gltf, glb, npy):
+    for make in (obj, off, table, ply, stl, gltf, glb, npy, session):
         target = folder / make.__name__
         target.mkdir(parents=True, exist_ok=True)
         for name, content in make().items():

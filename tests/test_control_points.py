@@ -11,7 +11,7 @@ import pytest
 
 from neuralmls.control_points import ControlPoints
 from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
-from neuralmls.turns import Turn
+from neuralmls import Orientation as Turn
 
 DOCS = Path(__file__).parent.parent / "docs"
 SCHEMA = json.loads((DOCS / "control-points.schema.json").read_text(encoding="utf-8"))

@@ -1,5 +1,6 @@
 //! What every fuzz target checks: a file is refused in one sentence, or it is read, and then written unmoved it is the same
-//! bytes, and moved it is a file again, with as many positions and the same faces. Never a panic, never much memory.
+//! bytes, and moved it is a file again, with the positions that were told before and the same faces. Never a panic, never much memory.
+//! Sessions: what is read is written, and read again says the same.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 
@@ -77,6 +78,8 @@ pub fn check(bytes: &[u8], format: Format) {
             .unwrap_or_else(|error| panic!("what was written: {error}"));
         assert_eq!(again.positions().len(), positions.len());
         assert_eq!(again.faces(), shape.faces());
+        let told = shape.round(&moved).expect("what was written can be told");
+        assert_eq!(again.positions(), told);
     }
 }
 
@@ -88,7 +91,27 @@ fn check_sniff(bytes: &[u8], format: Format) {
     }
 }
 
+/// Reads the bytes as a session or landmark file of any kind, and what is written of it.
+pub fn check_session(bytes: &[u8]) {
+    // What the ending decides, content does not: JSON, fiducials, a list with a count, and all else.
+    for name in ["a.json", "a.fcsv", "a.land", "a"] {
+        match neuralmls_session::read(bytes, name) {
+            Ok(read) => {
+                let text = read.session.to_json();
+                let again =
+                    neuralmls_session::read(text.as_bytes(), "a.json").expect("what was written is read");
+                assert!(again.session == read.session && again.notes.is_empty());
+                read.notes.iter().for_each(|note| check_words(note));
+            }
+            Err(error) => check_words(&error.message),
+        }
+    }
+}
+
 fn check_sentence(error: &Error) {
-    let sentence = error.to_string();
+    check_words(&error.to_string());
+}
+
+fn check_words(sentence: &str) {
     assert!(!sentence.is_empty() && sentence.len() < 1000 && !sentence.contains('\n'), "{sentence}");
 }

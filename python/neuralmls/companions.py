@@ -1,7 +1,7 @@
 """Files that a shape names: they go where it goes, so that it opens there with its materials and textures.
 
-A name is read with either slash. What leaves the shape's folder (`..`, an absolute path, a symbolic link that leads out)
-is refused by name: an unpacked archive must not make us copy or serve any file of its reader's.
+A name is read with either slash. What leaves the shape's folder (`..`, an absolute path, a symbolic link that leads
+out) is refused by name: an unpacked archive must not make us copy or serve any file of its reader's.
 """
 
 from __future__ import annotations
@@ -60,7 +60,8 @@ def find_beside(names: list[str], missing: Callable[[list[str]], list[str]], fol
     gone = missing([name for name in names if look(name)])
     for library in [path for path in found.values() if path.suffix.lower() == ".mtl"]:
         for readings in _images(library, folder):
-            if not any([look(image) for image in readings[:-1]]) and not look(readings[-1]) and readings[-1] not in gone:
+            there = [look(image) for image in readings]
+            if not any(there) and readings[-1] not in gone:
                 gone.append(readings[-1])
     return Companions(found, gone, refused)
 
@@ -83,7 +84,7 @@ def read_beside(folder: Path, name: str) -> bytes:
 
 
 def to_copy(found: dict[str, Path], source: Path, target: Path) -> tuple[dict[Path, Path], list[str]]:
-    """What of the files found in folder `source` is to be copied into folder `target`; what is there already stays as it is.
+    """What of the files found in folder `source` is to be copied into folder `target`; what is there already stays.
 
     Returns
     -------
@@ -125,7 +126,7 @@ def _same_content(one: Path, other: Path) -> bool:
 
 
 def _images(library: Path, folder: Path) -> list[list[str]]:
-    """The images that a material library names, relative to the shape: for each all readings of its statement, the likeliest last.
+    """The images that a library names, relative to the shape: all readings of each statement, the likeliest last.
 
     Options stand before the name, which may have spaces itself.
     """
@@ -148,7 +149,7 @@ def _images(library: Path, folder: Path) -> list[list[str]]:
 
 
 def _inside(folder: Path, name: str) -> Path | None:
-    """The path of a name that stays in its folder, by its words; with backslashes where no file has them in its name."""
+    """The path of a name that stays in its folder; backslashes are slashes where no file has them in its name."""
     if not name or ":" in name or "\0" in name:
         return None
     relative = PurePosixPath(name.replace("\\", "/"))
@@ -159,17 +160,8 @@ def _inside(folder: Path, name: str) -> Path | None:
 
 
 def _leads_out(folder: Path, name: str) -> bool:
-    """Whether a name is that of something there which is not within the folder."""
+    """Whether a name is that of something which is not within the folder."""
     path = _inside(folder, name)
     if path is None:
-        outside = folder / name.replace("\\", "/") if name and "\0" not in name else None
-        try:
-            return outside is not None and outside.is_file()
-        except OSError:
-            return False
-    try:
-        if not os.path.lexists(path):
-            return False
-        return not path.resolve().is_relative_to(folder.resolve())
-    except (OSError, RuntimeError):  # a link to itself
-        return True
+        return "\0" not in name and os.path.isfile(folder / name.replace("\\", "/"))
+    return not Path(os.path.realpath(path)).is_relative_to(os.path.realpath(folder))

@@ -219,7 +219,7 @@ class ControlPoints:
 
 
 def _restored(text: str) -> ControlPoints:
-    return ControlPoints._of(_core.Session.read(text.encode(), "points.json")[0].points)
+    return ControlPoints._of(_core.Read(text.encode(), "points.json").session.points)
 
 
 def _fixed(array: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import shutil
@@ -14,9 +15,10 @@ from typing import BinaryIO
 from neuralmls import leftovers
 from neuralmls.errors import ArgumentError, FileError
 
-# Neither waits for somebody to write into a pipe, nor is swapped for a link between a check and the opening.
-_WITHOUT_WAITING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
-_NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
+# Opening a pipe waits for somebody to write into it; and what is a file may be one a moment later.
+_WITHOUT_WAITING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0)
+_BINARY = getattr(os, "O_BINARY", 0)
+_NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_CLOEXEC", 0) | _BINARY
 
 
 def as_path(name: str, path: str | os.PathLike[str]) -> Path:
@@ -47,19 +49,37 @@ def read_bytes(path: Path, *, links: bool = True) -> bytes:
     OSError
         It cannot be read; or it is a device or another pipe, which may have no end.
     """
-    flags = os.O_RDONLY | _WITHOUT_WAITING | (0 if links else getattr(os, "O_NOFOLLOW", 0))
-    descriptor = os.open(path, flags)
-    with open(descriptor, "rb") as file:
-        mode = os.fstat(descriptor).st_mode
-        if stat.S_ISDIR(mode):
-            raise OSError("this is a folder, not a file")
-        if stat.S_ISFIFO(mode) and links and path.parts[:2] in {("/", "dev"), ("/", "proc")}:
-            os.set_blocking(descriptor, True)
-        elif stat.S_ISFIFO(mode):
-            raise OSError("this is a pipe, not a file")
-        elif not stat.S_ISREG(mode):
-            raise OSError("this is a device, not a file")
+    with _open(path, links=links) as file:
         return file.read()
+
+
+def _open(path: Path, *, links: bool = True) -> BinaryIO:
+    """Open what `read_bytes` reads, without waiting."""
+    from_shell = links and path.parts[:2] in {("/", "dev"), ("/", "proc")}
+    _check_kind(os.stat(path, follow_symlinks=links).st_mode, from_shell)  # opening a device may do something already
+    descriptor = os.open(
+        path, os.O_RDONLY | _WITHOUT_WAITING | _BINARY | (0 if links else getattr(os, "O_NOFOLLOW", 0))
+    )
+    file = open(descriptor, "rb")  # noqa: SIM115 (the caller closes it)
+    try:
+        _check_kind(os.fstat(descriptor).st_mode, from_shell)
+        if stat.S_ISFIFO(os.fstat(descriptor).st_mode):
+            os.set_blocking(descriptor, True)
+    except OSError:
+        file.close()
+        raise
+    return file
+
+
+def _check_kind(mode: int, from_shell: bool) -> None:
+    if stat.S_ISDIR(mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+    if stat.S_ISLNK(mode):
+        raise OSError("this is a link, not a file")
+    if stat.S_ISFIFO(mode) and not from_shell:
+        raise OSError("this is a pipe, not a file")
+    if not (stat.S_ISREG(mode) or stat.S_ISFIFO(mode)):
+        raise OSError("this is a device, not a file")
 
 
 def write_atomically(path: str | os.PathLike[str], data: bytes) -> None:
@@ -126,7 +146,7 @@ def _opened(content: bytes | Path) -> BinaryIO:
     if isinstance(content, bytes):
         return io.BytesIO(content)
     try:
-        return io.BytesIO(read_bytes(content, links=False))
+        return _open(content)
     except OSError as error:
         raise FileError(f"{content}: cannot read: {error.strerror or error}") from error
 
@@ -142,7 +162,7 @@ def _mode(path: Path, target: Path) -> int | None:
 
 
 def _write_new(path: Path, source: BinaryIO, mode: int | None) -> None:
-    """Write a file that is not there yet, from its creation on with the permissions of the one that it is to replace."""
+    """Write a file that is not there yet, always with the permissions of the one that it is to replace."""
     permissions = 0o666 if mode is None else stat.S_IMODE(mode)
     with open(os.open(path, _NEW, permissions & 0o777), "wb") as file:
         if mode is not None:

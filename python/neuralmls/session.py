@@ -113,15 +113,14 @@ class Session:
         ControlPointError
             The file is well-formed, but its control points cannot be used.
         """
-        core, notes = _read(path)
+        read = _read(path)
         if targets is not None:
-            other, more = _read(targets)
+            other = _read(targets)
             try:
-                core, joined = core.joined(other, by_order)
+                read = read.joined(other, by_order)
             except (FileError, ControlPointError, ArgumentError) as error:
                 raise type(error)(f"{path} and {targets}: {error}") from None
-            notes = [*notes, *more, *joined]
-        return cls._of(core, notes)
+        return cls._of(read.session, read.notes)
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write a session file (JSON), or the control points alone (CSV), by the ending; keys of others are kept.
@@ -238,10 +237,10 @@ class Session:
 
 
 def _restored(text: str, notes: tuple[str, ...]) -> Session:
-    return Session._of(_core.Session.read(text.encode(), "session.json")[0], notes)
+    return Session._of(_core.Read(text.encode(), "session.json").session, notes)
 
 
-def _read(path: str | os.PathLike[str]) -> tuple[_core.Session, list[str]]:
+def _read(path: str | os.PathLike[str]) -> _core.Read:
     source = as_path("path", path)
     try:
         data = read_bytes(source)
@@ -250,7 +249,7 @@ def _read(path: str | os.PathLike[str]) -> tuple[_core.Session, list[str]]:
     except OSError as error:
         raise FileError(f"{path}: cannot read: {error.strerror or error}") from error
     try:
-        return _core.Session.read(data, source.name)
+        return _core.Read(data, source.name)
     except (FileError, ControlPointError) as error:
         raise type(error)(f"{path}: {error}") from None
 

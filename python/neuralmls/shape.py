@@ -98,7 +98,9 @@ class Shape:
 
     def look_beside(self) -> Companions:
         """Look for the files that it names: which are there now, which are missing, which lead out of its folder."""
-        return find_beside(self._file.named_files, lambda found: self._file.missing_files(set(found)), self._path.parent)
+        return find_beside(
+            self._file.named_files, lambda found: self._file.missing_files(set(found)), self._path.parent
+        )
 
     def side_files(self, stem: str) -> list[str]:
         """The files (glTF buffers) that `write` may write beside a file called after `stem` if the shape has moved."""

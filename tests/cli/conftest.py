@@ -19,7 +19,6 @@ PROGRAM = "import sys; from neuralmls.cli import main; sys.exit(main())"
 # Two quads, one above the other, with things that a deformation has nothing to do with.
 SHAPE = """\
 # a comment, and  two  blanks
-mtllib shape.mtl
 g lower
 v 0 0 0
 v 1 0 0

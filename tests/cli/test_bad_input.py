@@ -21,6 +21,15 @@ HEADER = "name,x,y,z\n"
         ("no-vertices.obj", "o nothing\n", ("no vertices",)),
         ("nan.obj", "v 0 0 0\nv 0 nan 0\n", ("line 2", "nan")),
         ("infinite.obj", "v 0 0 0\nv 0 1e999 0\n", ("line 2", "1e999")),
+        ("comma.obj", "v 0,5 0 0\nv 1 0 0\n", ("line 1", "decimal commas are not read", "0,5")),
+        ("comma.xyz", "0,5 0 0\n1 0 0\n", ("line 1", "decimal commas are not read", "0,5")),
+        ("power.obj", f"v {10**400} 0 0\nv 1 0 0\n", ("line 1", "not a finite number")),
+        (
+            "pointer.ply",
+            "version https://git-lfs.github.com/spec/v1\noid sha256:0\n",
+            ("Git LFS pointer", "git lfs pull"),
+        ),
+        ("scene.dae", "<?xml version='1.0'?><COLLADA/>", ("COLLADA", "not read yet")),
         ("face.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 7\n", ("line 4", "7", "3")),
         ("one-place.obj", "v 1 1 1\nv 1 1 1\n", ("all 2 vertices", "one place")),
         ("huge.obj", "v -1e308 0 0\nv 1e308 0 0\nv 0 1 0\nf 1 2 3\n", ("1e+150 units",)),
@@ -174,5 +183,22 @@ def test_wrong_use(refused, arguments, words):
     refused(2, *arguments, words=words)
 
 
-def test_control_characters_in_names_do_not_reach_the_terminal(refused):
-    refused(1, "inspect", "a\nb\x1b[31m.obj", words=(r"a\nb\x1b[31m.obj",))
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
+def test_pipes_are_not_waited_for(refused, here):
+    os.mkfifo(here / "pipe.obj")
+    refused(1, "inspect", "pipe.obj", words=("pipe.obj: cannot read: this is a pipe, not a file",))
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        ("a\nb\x1b[31m.obj", r"a\nb\x1b[31m.obj"),
+        ("a\u202ejbo.exe", r"a\u202ejbo.exe"),
+        ("a\u2066b\ufeff.obj", r"a\u2066b\ufeff.obj"),
+        ("a\u2028b\u2029.obj", r"a\u2028b\u2029.obj"),
+        ("a\udcff.obj", r"a\udcff.obj"),
+        ("M\u00fcll \u6905.obj", "M\u00fcll \u6905.obj"),
+    ],
+)
+def test_what_drives_a_terminal_or_turns_its_writing_is_spelled_out(refused, name, shown):
+    refused(1, "inspect", name, words=(shown,))

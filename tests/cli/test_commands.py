@@ -14,7 +14,7 @@ import neuralmls as nm
 def test_inspect_tells_what_is_there(run):
     ran = run("inspect", "shape.obj")
     assert (ran.code, ran.err) == (0, "")
-    for words in ("shape.obj: OBJ", "8", "(0, 0, 0) to (1, 2, 1.5)", "1 x 2 x 1.5", "lower, upper", "oak", "shape.mtl"):
+    for words in ("shape.obj: OBJ", "8", "(0, 0, 0) to (1, 2, 1.5)", "1 x 2 x 1.5", "lower, upper", "oak"):
         assert words in ran.out
     assert "Everything else is carried over" in ran.out
     assert "normals" not in ran.out

@@ -33,6 +33,7 @@ def built(here: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_it_serves_the_shape_until_it_is_interrupted(built, start):
+    (built / "shape.obj").write_text("mtllib shape.mtl\n" + (built / "shape.obj").read_text())
     (built / "shape.mtl").write_text("newmtl oak\nmap_Kd oak grain.png\n")
     (built / "oak grain.png").write_bytes(b"png")
     with start("edit", "shape.obj", "--points", "points.csv", "--no-browser", program=PROGRAM) as running:

@@ -41,6 +41,7 @@ def test_output_of_another_format_is_refused(refused):
 
 def test_companions_go_along_and_those_of_other_content_are_kept_and_named(run, here):
     (here / "there").mkdir()
+    (here / "shape.obj").write_text("mtllib shape.mtl\n" + (here / "shape.obj").read_text())
     (here / "shape.mtl").write_text("newmtl oak\n")
     into = (*DEFORM[:-1], "--json", "--force", "-o", "there/out.obj")
     told = json.loads(run(*into).out)
@@ -53,6 +54,40 @@ def test_companions_go_along_and_those_of_other_content_are_kept_and_named(run, 
     assert json.loads(ran.out)["warnings"] == [sentence]
     assert json.loads(ran.out)["files"] == ["there/out.obj"]
     assert (here / "there" / "shape.mtl").read_text() == "newmtl steel\n"
+
+
+def test_companions_that_are_missing_or_lead_out_are_named(run, here):
+    (here / "shape.obj").write_text("mtllib none.mtl\nmtllib ../out.mtl\n" + (here / "shape.obj").read_text())
+    (here.parent / "out.mtl").write_text("newmtl oak\n")
+    ran = run(*DEFORM[:-1], "--json", "-o", "out.obj")
+    sentences = [
+        "'none.mtl', which the shape names, is not there: it goes without",
+        "'../out.mtl', which the shape names, leads out of its folder: it is left behind",
+    ]
+    assert ran.code == 0
+    assert ran.err == "".join(f"neuralmls: warning: {sentence}\n" for sentence in sentences)
+    assert json.loads(ran.out)["warnings"] == sentences
+    told = json.loads(run("inspect", "shape.obj", "--json").out)
+    assert (told["missing"], told["leads_out"]) == (["none.mtl"], ["../out.mtl"])
+    shown = run("inspect", "shape.obj").out
+    assert "material libraries       2: none.mtl, ../out.mtl\n" in shown
+    assert "files that are missing   none.mtl\n" in shown
+    assert "files left behind        ../out.mtl (out of its folder)\n" in shown
+
+
+@pytest.mark.parametrize("name", ["cloud.asc", "cloud.pts", "cloud.xyzrgb"])
+def test_the_ending_of_the_input_is_always_right(run, refused, here, name):
+    (here / name).write_text("0.5 0 0.5\n1 1 0.5\n0.5 2 0.5\n0 0 0\n")
+    arguments = ("deform", name, *DEFORM[2:])
+    assert run(*arguments, "-o", f"bent.{name[6:].upper()}").code == 0
+    refused(2, *arguments, "-o", "bent.obj", words=("bent.obj: expected a name that ends in .xyz or", f".{name[6:]}"))
+
+
+def test_a_name_that_is_too_long_is_blamed_and_not_standard_output(refused):
+    name = "a" * 300 + ".obj"
+    refused(1, *DEFORM, "-o", name, words=(f"{name}: cannot write here: File name too long",))
+    refused(1, "points", "shape.obj", "-o", "a" * 300 + ".json", words=("aaa.json: cannot write here: File name too",))
+    refused(1, "inspect", name, words=(f"{name}: cannot read: File name too long",))
 
 
 def test_missing_folder(refused):

@@ -19,6 +19,7 @@ from pathlib import Path
 import pytest
 
 DIST = Path(__file__).resolve().parents[2] / "dist"
+# On disk, with NumPy.
 LARGEST_MB = 130
 # Extras of the checkout, not of users: `make test` and `make bench` install and use them.
 OF_THE_CHECKOUT = {"bench", "test"}
@@ -118,13 +119,12 @@ def test_one_wheel_serves_every_python_and_has_the_editor_and_all_licences(wheel
         assert "neuralmls/editor_server/static/index.html" in static
         assert {".js", ".css", ".wasm"} <= {Path(name).suffix for name in static}
         licences = {Path(name).name: archive.read(name).decode() for name in names if ".dist-info/licenses/" in name}
-        modules = [archive.read(name) for name in names if name.endswith((".so", ".wasm"))]
+        for name in names:
+            here = [path for path in (Path.home(), DIST.parent) if f"{path}/".encode() in archive.read(name)]
+            assert not here, f"{name} names {here}"
     assert "Permission is hereby granted" in licences["LICENSE"]
     for part in ("rayon", "numpy", "wasm-bindgen", "the Rust standard library", "preact", "three", "three-mesh-bvh"):
         assert re.search(rf"^{part}( \d.*)?$", licences["LICENSE-THIRD-PARTY.txt"], re.MULTILINE), part
-    assert len(modules) == 2
-    for module in modules:
-        assert str(Path.home()).encode() + b"/" not in module
 
 
 def test_the_sources_have_what_a_wheel_is_built_from():
@@ -151,7 +151,7 @@ def test_no_wheel_is_built_without_the_editor(tmp_path, monkeypatch):
 
 
 def test_it_is_small(install, plain):
-    assert install(alone=True).added < 10
+    assert install(alone=True).added < 20
     assert plain.added < LARGEST_MB
 
 

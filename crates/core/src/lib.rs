@@ -35,7 +35,7 @@ pub use deformer::{Deformed, Deformer, Pose};
 pub use error::Error;
 pub use geometry::{placement, Frame, Order, PointTree};
 pub use machine::{memory, progress};
-pub use mls::{best_rotation, Transform, ANCHOR_WEIGHT};
+pub use mls::{best_rotation, Transform, ANCHOR_WEIGHT, RIDGE};
 pub use probe::{places, Look, Probe, PLACES};
 pub use weights::inverse_distance::InverseDistance;
 pub use weights::network::{train, Layer, Network, Samples, Schedule, Trained, Training};

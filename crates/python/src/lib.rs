@@ -26,7 +26,7 @@ mod _core {
     #[pymodule_export]
     use crate::placement::{farthest_of, farthest_points, sample_surface};
     #[pymodule_export]
-    use crate::session::{ControlPoints, Orientation, Session};
+    use crate::session::{ControlPoints, Orientation, Read, Session};
     #[pymodule_export]
     use crate::shape_file::ShapeFile;
     #[pymodule_export]

@@ -198,6 +198,35 @@ impl ControlPoints {
     }
 }
 
+/// What reading a file gave.
+#[pyclass(frozen)]
+pub(crate) struct Read(neuralmls_session::Read);
+
+#[pymethods]
+impl Read {
+    /// A file of control points of any kind.
+    #[new]
+    fn new(data: &[u8], name: &str) -> PyResult<Read> {
+        neuralmls_session::read(data, name).map(Read).map_err(raised)
+    }
+
+    /// Sources of this one and targets of another.
+    fn joined(&self, targets: &Read, by_order: bool) -> PyResult<Read> {
+        neuralmls_session::join(self.0.clone(), targets.0.clone(), by_order).map(Read).map_err(raised)
+    }
+
+    #[getter]
+    fn session(&self) -> Session {
+        Session(self.0.session.clone())
+    }
+
+    /// What was left out, a sentence each.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.0.notes.clone()
+    }
+}
+
 /// Control points, settings, frame.
 #[pyclass(frozen)]
 #[derive(Clone)]
@@ -208,20 +237,6 @@ impl Session {
     #[new]
     fn new(points: &ControlPoints) -> Session {
         Session(neuralmls_session::Session::new(points.0.clone()))
-    }
-
-    /// A file of control points of any kind, and notes on what was left out.
-    #[staticmethod]
-    fn read(data: &[u8], name: &str) -> PyResult<(Session, Vec<String>)> {
-        let read = neuralmls_session::read(data, name).map_err(raised)?;
-        Ok((Session(read.session), read.notes))
-    }
-
-    /// Sources of the one and targets of the other.
-    fn joined(&self, targets: &Session, by_order: bool) -> PyResult<(Session, Vec<String>)> {
-        let read =
-            neuralmls_session::join(self.0.clone(), targets.0.clone(), by_order).map_err(raised)?;
-        Ok((Session(read.session), read.notes))
     }
 
     fn to_json(&self) -> String {

@@ -86,6 +86,28 @@ fn normals_that_the_header_names_turn() {
 }
 
 #[test]
+fn tables_of_cloudcompare_and_of_scanners() {
+    let shape =
+        table("//X Y Z R G B Scalar field Nx Ny Nz\n2\n0 0 0 1 2 3 0.5 1 0 0\n1 1 1 1 2 3 0.5 1 0 0\n");
+    assert!(shape.has_normals());
+    let names = &shape.facts().iter().find(|(what, _)| what == "column names").unwrap().1;
+    assert_eq!(names, "x, y, z, r, g, b, scalar field, nx, ny, nz");
+    // Without the names of the position, or with an unusual word among the usual ones, nobody knows.
+    assert!(!table("//a scalar field Nx Ny Nz\n0 0 0 1 0\n").has_normals());
+    assert!(!table("//X Y Z some Nx field Ny Nz\n0 0 0 1 0 0 1\n").has_normals());
+    for (text, first) in [
+        ("//X;Y;Z;Intensity\n0.5;0;0;nan\n1;1;1;nan\n", "0.5"),
+        ("//X,Y,Z\n2\n0.5,0,0\n1,1,1\n", "0.5"),
+        ("2\n0.5 0 0 -1200 10 20 30\n1 1 1 -1200 10 20 30\n", "0.5"),
+        ("PointID,X,Y,Z,Class\nP0,0.5,0,0,ground\nP1,1,1,1,ground\n", "0.5"),
+    ] {
+        let shape = table(text);
+        assert_eq!(shape.positions(), [0.5, 0.0, 0.0, 1.0, 1.0, 1.0], "{text}");
+        assert_eq!(with(&shape, 0, 7.25), text.replacen(first, "7.25", 1));
+    }
+}
+
+#[test]
 fn broken_files_are_refused_with_their_line() {
     for (text, sentence) in [
         ("\n# only comments\n", "the table has no rows, expected numbers"),

@@ -22,7 +22,7 @@ impl Handles {
     /// Where the lengths do not fit.
     #[wasm_bindgen(constructor)]
     pub fn new(session: &Session, own_logits: Vec<f32>) -> Result<Handles, JsError> {
-        let session = session.session.clone();
+        let session = session.session().clone();
         let (p, dim) = (session.points.sources(), session.points.dim());
         let core = neuralmls_core::Handles::of_logits(&p, dim, own_logits, session.settings.transform);
         Ok(Handles { core: core.map_err(refused)?, session })
@@ -30,7 +30,7 @@ impl Handles {
 
     /// Other settings, or weights of control points, for the same control points at rest.
     pub fn set_session(&mut self, session: &Session) {
-        self.session = session.session.clone();
+        self.session = session.session().clone();
         self.core.set_transform(self.session.settings.transform);
     }
 

@@ -31,7 +31,7 @@ impl Points {
     /// Where the control points have another dimension, or the points no size.
     pub fn train(&self, session: &Session, tell: &Function) -> Result<Map, JsError> {
         let bounds = neuralmls_session::Bounds::around(&self.x, self.dim).map_err(refused)?;
-        let map = session.session.fit(Some(&bounds), &mut reporter(tell)).map_err(refused)?;
+        let map = session.session().fit(Some(&bounds), &mut reporter(tell)).map_err(refused)?;
         Ok(Map(map))
     }
 
@@ -126,7 +126,7 @@ impl Bound {
     /// # Errors
     /// Where the control points at rest or the weights are others.
     pub fn set_session(&mut self, session: &Session) -> Result<(), JsError> {
-        self.map = self.map.with(session.session.clone()).map_err(refused)?;
+        self.map = self.map.with(session.session().clone()).map_err(refused)?;
         self.points.set_transform(self.map.transform());
         Ok(())
     }

@@ -1,14 +1,18 @@
 //! Sessions: control points and settings, read and written.
 
+use neuralmls_session::Read;
 use wasm_bindgen::prelude::*;
 
 use crate::refused;
 
 /// Control points, settings, frame.
 #[wasm_bindgen]
-pub struct Session {
-    pub(crate) session: neuralmls_session::Session,
-    notes: Vec<String>,
+pub struct Session(Read);
+
+impl Session {
+    pub(crate) fn session(&self) -> &neuralmls_session::Session {
+        &self.0.session
+    }
 }
 
 #[wasm_bindgen]
@@ -18,8 +22,7 @@ impl Session {
     /// # Errors
     /// One sentence without the file's name.
     pub fn read(bytes: &[u8], name: &str) -> Result<Session, JsError> {
-        let read = neuralmls_session::read(bytes, name).map_err(refused)?;
-        Ok(Session { session: read.session, notes: read.notes })
+        neuralmls_session::read(bytes, name).map(Session).map_err(refused)
     }
 
     /// Where the control points of this session go, from a second file: by name, or by order.
@@ -27,25 +30,22 @@ impl Session {
     /// # Errors
     /// Where they have nothing in common.
     pub fn joined(&self, targets: &Session, by_order: bool) -> Result<Session, JsError> {
-        let read = neuralmls_session::join(self.session.clone(), targets.session.clone(), by_order);
-        let read = read.map_err(refused)?;
-        let notes = [&self.notes[..], &targets.notes, &read.notes].concat();
-        Ok(Session { session: read.session, notes })
+        neuralmls_session::join(self.0.clone(), targets.0.clone(), by_order).map(Session).map_err(refused)
     }
 
     /// What reading left out, a sentence each.
     pub fn notes(&self) -> Vec<String> {
-        self.notes.clone()
+        self.0.notes.clone()
     }
 
     /// Coordinates a control point.
     pub fn dim(&self) -> usize {
-        self.session.points.dim()
+        self.0.session.points.dim()
     }
 
     /// The text of a session file, version 2.
     pub fn to_json(&self) -> String {
-        self.session.to_json()
+        self.0.session.to_json()
     }
 
     /// The text of a landmark file.
@@ -53,7 +53,7 @@ impl Session {
     /// # Errors
     /// Where there are orientations, which it cannot hold.
     pub fn to_csv(&self) -> Result<String, JsError> {
-        self.session.to_csv().map_err(refused)
+        self.0.session.to_csv().map_err(refused)
     }
 
     /// What a person should know of the control points beside a shape with this box.
@@ -61,14 +61,15 @@ impl Session {
     /// # Errors
     /// Where they have another dimension.
     pub fn check(&self, min: &[f64], max: &[f64]) -> Result<Vec<String>, JsError> {
-        self.session.points.check((min, max)).map_err(refused)
+        self.0.session.points.check((min, max)).map_err(refused)
     }
 }
 
 /// What shaders, which have arithmetic of their own, take from the core: JSON.
 #[wasm_bindgen]
 pub fn constants() -> String {
-    format!("{{\"anchor_weight\": {:e}}}", neuralmls_core::ANCHOR_WEIGHT)
+    let (anchor_weight, ridge) = (neuralmls_core::ANCHOR_WEIGHT, neuralmls_core::RIDGE);
+    format!("{{\"anchor_weight\": {anchor_weight:e}, \"ridge\": {ridge:e}}}")
 }
 
 /// The settings that hold where nothing is said, as a session file has them.

@@ -25,7 +25,7 @@ def line(text: str, file: TextIO | None = None) -> None:
 
 
 def visible(text: str) -> str:
-    """The text with what is not shown spelled out: a name must not break a line, drive a terminal or turn its writing round.
+    """The text with what is not shown spelled out: a name must not break a line, drive a terminal or turn it round.
 
     That is control characters, marks of direction and the like, ends of lines and paragraphs, halves of a character.
     """

@@ -42,7 +42,9 @@ def of_shapes(shapes: Sequence[Path], output: Path) -> list[Path]:
 
 
 def check_output(path: Path, *, force: bool, inputs: Iterable[Path] = ()) -> None:
-    """Refuse a path that is a folder, has a name that the disk does not take, is in no folder or in one that is not writable, or has a file already.
+    """Refuse a path that is a folder, is in none or in one that is not writable, or has a file already.
+
+    So is one whose name the disk does not take.
 
     Raises
     ------
@@ -104,7 +106,7 @@ def make_folder(path: Path) -> None:
 def write_shape(
     shape: Shape, path: Path, positions: ArrayLike, *, maps: ArrayLike | None = None, force: bool
 ) -> tuple[list[str], list[str]]:
-    """Write a shape with other positions; return the files written, and warnings of files beside it that are kept or missing."""
+    """Write a shape with other positions; return the files written, and warnings of others that are kept or missing."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         written = shape.write(path, positions, maps=maps, overwrite=force)

@@ -325,3 +325,57 @@ fn a_frame_after_its_weights_were_prepared_finds_them() {
     );
     assert!(deformer.prepare(0.0).is_err());
 }
+
+/// About an axis that is not one of the coordinates'.
+fn turned_about(x: &[f64; 3], angle: f64) -> [f64; 3] {
+    let axis = [2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0];
+    let (sin, cos) = angle.sin_cos();
+    let along: f64 = (0..3).map(|k| axis[k] * x[k]).sum();
+    std::array::from_fn(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        cos * x[k] + sin * (axis[i] * x[j] - axis[j] * x[i]) + (1.0 - cos) * along * axis[k]
+    })
+}
+
+#[test]
+fn a_rigid_motion_of_control_points_near_a_line_moves_every_point_by_it() {
+    let mut random = (0..).map(|at| (f64::from(at) * 12.9898 + 4.1).sin() * 43758.5453);
+    let mut random = || random.next().map_or(0.0, |v| 2.0 * (v - v.floor()) - 1.0);
+    for exponent in 2..=6 {
+        let h = 10f64.powi(-exponent);
+        for angle in [0.4, 1.9, 3.1] {
+            let shape: Vec<[f64; 3]> = (0..200).map(|_| std::array::from_fn(|_| random())).collect();
+            let p: Vec<[f64; 3]> = (0..6)
+                .map(|i| [0.4 * f64::from(i) - 1.0, h * if i == 1 { 1.0 } else { random() }, h * random()])
+                .map(|p| turned_about(&p, 0.7))
+                .collect();
+            let moved = |x: &[f64; 3]| -> [f64; 3] {
+                let turned = turned_about(x, angle);
+                std::array::from_fn(|k| turned[k] + 0.5 * k as f64)
+            };
+            let q: Vec<f64> = p.iter().flat_map(moved).collect();
+            let columns: [[f64; 3]; 3] = std::array::from_fn(|axis| {
+                turned_about(&std::array::from_fn(|k| f64::from(u8::from(k == axis))), angle)
+            });
+            let rotation: Vec<f64> = (0..9).map(|at| columns[at % 3][at / 3]).collect();
+            let orientations: Vec<f64> =
+                (0..6).flat_map(|i| if i % 2 == 0 { rotation.clone() } else { vec![f64::NAN; 9] }).collect();
+            let logits: Vec<f32> = (0..1200).map(|_| 10.0 * random() as f32).collect();
+            for transform in [Transform::Rigid, Transform::Similarity, Transform::Affine] {
+                let (x, p) = (shape.as_flattened().to_vec(), p.as_flattened());
+                let deformer = Deformer::of_logits(x, 3, p, logits.clone(), transform).unwrap();
+                for temperature in [0.02, 0.3, 1.0, 10.0] {
+                    for orientations in [None, Some(&orientations[..])] {
+                        let pose = Pose { q: &q, orientations };
+                        let y = deformer.deform(pose, temperature, false, &mut |_| true).unwrap().positions;
+                        let expected = shape.iter().flat_map(moved);
+                        let worst =
+                            y.iter().zip(expected).fold(0.0f64, |worst, (y, e)| worst.max((y - e).abs()));
+                        // The shape is 2 across.
+                        assert!(worst < 2e-6, "{transform:?}, h = {h}, T = {temperature}: {worst}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -4,12 +4,12 @@
 //! points do not span the space. `M = G + (C^T - G P)(P + 1e-12 |P| I)^-1` agrees with it to 1e-12 where it exists, gives
 //! the best map in the span and G on the rest where it does not, and goes from one to the other continuously.
 
-use super::matrix::{norm, Matrix};
+use super::matrix::{cholesky, norm, solve, Matrix};
 use super::moments::Moments;
 
 /// What stands for the missing extent of the control points, relative to the one they have. Smaller than the rotation's
 /// anchor: the residuals, unlike C, are exact where the anchor is right.
-pub(super) const RIDGE: f64 = 1e-12;
+pub const RIDGE: f64 = 1e-12;
 
 /// `moments` are those of the residuals of `g`.
 pub(super) fn linear<const D: usize>(moments: &Moments<D>, g: &Matrix<D>) -> Matrix<D> {
@@ -26,32 +26,4 @@ pub(super) fn linear<const D: usize>(moments: &Moments<D>, g: &Matrix<D>) -> Mat
         let row = solve(&lower, std::array::from_fn(|c| residual[c][r] / size));
         std::array::from_fn(|c| g[r][c] + row[c])
     })
-}
-
-/// `L` with `L L^T = s`; `None` where rounding has made `s` indefinite.
-fn cholesky<const D: usize>(s: &Matrix<D>) -> Option<Matrix<D>> {
-    let mut l = [[0.0; D]; D];
-    for r in 0..D {
-        for c in 0..=r {
-            let rest = s[r][c] - (0..c).map(|k| l[r][k] * l[c][k]).sum::<f64>();
-            if r != c {
-                l[r][c] = rest / l[c][c];
-            } else if rest > 0.0 {
-                l[r][r] = rest.sqrt();
-            } else {
-                return None;
-            }
-        }
-    }
-    Some(l)
-}
-
-fn solve<const D: usize>(l: &Matrix<D>, mut b: [f64; D]) -> [f64; D] {
-    for r in 0..D {
-        b[r] = (b[r] - (0..r).map(|k| l[r][k] * b[k]).sum::<f64>()) / l[r][r];
-    }
-    for r in (0..D).rev() {
-        b[r] = (b[r] - (r + 1..D).map(|k| l[k][r] * b[k]).sum::<f64>()) / l[r][r];
-    }
-    b
 }

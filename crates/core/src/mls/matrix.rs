@@ -32,3 +32,32 @@ pub fn norm<const D: usize>(m: &Matrix<D>) -> f64 {
 pub fn trace_of_product<const D: usize>(a: &Matrix<D>, b: &Matrix<D>) -> f64 {
     (0..D).map(|r| (0..D).map(|c| a[r][c] * b[c][r]).sum::<f64>()).sum()
 }
+
+/// `L` with `L L^T = s`; `None` where rounding has made `s` indefinite.
+pub fn cholesky<const D: usize>(s: &Matrix<D>) -> Option<Matrix<D>> {
+    let mut l = [[0.0; D]; D];
+    for r in 0..D {
+        for c in 0..=r {
+            let rest = s[r][c] - (0..c).map(|k| l[r][k] * l[c][k]).sum::<f64>();
+            if r != c {
+                l[r][c] = rest / l[c][c];
+            } else if rest > 0.0 {
+                l[r][r] = rest.sqrt();
+            } else {
+                return None;
+            }
+        }
+    }
+    Some(l)
+}
+
+/// `x` with `L L^T x = b`.
+pub fn solve<const D: usize>(l: &Matrix<D>, mut b: [f64; D]) -> [f64; D] {
+    for r in 0..D {
+        b[r] = (b[r] - (0..r).map(|k| l[r][k] * b[k]).sum::<f64>()) / l[r][r];
+    }
+    for r in (0..D).rev() {
+        b[r] = (b[r] - (r + 1..D).map(|k| l[k][r] * b[k]).sum::<f64>()) / l[r][r];
+    }
+    b
+}

@@ -8,35 +8,25 @@
 mod affine;
 pub(crate) mod batch;
 
+mod global;
 mod matrix;
 mod moments;
 mod oriented;
 mod rotation;
 mod similarity;
+mod transform;
 
-pub use matrix::Matrix;
-pub use rotation::best_rotation;
+pub use affine::RIDGE;
+pub use rotation::{best_rotation, ANCHOR_WEIGHT};
+pub use transform::Transform;
 
 use crate::geometry::Frame;
 use crate::softmax::Dominant;
+pub(crate) use global::Global;
+use matrix::Matrix;
 use moments::Moments;
 use oriented::Oriented;
 pub(crate) use oriented::{check as check_orientations, oriented, squares};
-
-/// How much the global map counts against the local one, relative to its size: enough to decide what is open, too little to
-/// be seen where anything is determined.
-pub const ANCHOR_WEIGHT: f64 = 1e-9;
-
-/// The family of maps that the local map is chosen from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Transform {
-    /// Rotation and translation: lengths and angles survive.
-    Rigid,
-    /// Rotation, one scale, translation: angles survive.
-    Similarity,
-    /// Any linear map and translation.
-    Affine,
-}
 
 /// The moved control points, with what is the same for every point of a shape: the map that fits all of them with equal
 /// weights.
@@ -47,17 +37,6 @@ pub struct Mls<'a, const D: usize> {
     transform: Transform,
     anchor: Global<D>,
     undecided: f64,
-}
-
-/// The global fit: what a local map follows where the control points around it leave something open.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Global<const D: usize> {
-    /// The best rotation of all control points; the identity where even they leave it open.
-    pub rotation: Matrix<D>,
-    /// The best scale (similarity); 1 where there is none.
-    pub scale: f64,
-    /// The best linear map (affine).
-    pub linear: Matrix<D>,
 }
 
 /// Where a point goes, and by which map.
@@ -83,17 +62,8 @@ impl<'a, const D: usize> Mls<'a, D> {
         transform: Transform,
     ) -> Self {
         debug_assert!(!p.is_empty() && p.len() == q.len());
-        let equal = vec![1.0; p.len()];
-        let dominant = Dominant { index: 0, second: 1.0 / p.len() as f64 };
-        let mut moments = Moments::new(p, q, &equal, dominant, None);
-        let added = oriented::add(&mut moments, &oriented, &equal, dominant, None);
-        let rotation = rotation::anchored(&moments.pq, &matrix::identity());
-        added.align(&mut moments, &rotation);
-        let scale = similarity::scale(&moments, &rotation, 1.0);
-        let mut residuals = Moments::new(p, q, &equal, dominant, Some(&rotation));
-        oriented::add(&mut residuals, &oriented, &equal, dominant, Some(&rotation));
-        let linear = affine::linear(&residuals, &rotation);
-        Mls { p, q, oriented, transform, anchor: Global { rotation, scale, linear }, undecided: 0.0 }
+        let anchor = Global::new(p, q, &oriented);
+        Mls { p, q, oriented, transform, anchor, undecided: 0.0 }
     }
 
     /// Moves by the mean of the rotations that fit nearly as well as the best one, where that is better than others by less than this

@@ -8,7 +8,10 @@
 //! precision relative to the gap, with no special cases.
 
 use super::matrix::{norm, Matrix};
-use super::ANCHOR_WEIGHT;
+
+/// How much the global map counts against the local one, relative to its size: enough to decide what is open, too little to
+/// be seen where anything is determined.
+pub const ANCHOR_WEIGHT: f64 = 1e-9;
 
 /// The rule: the rotation that `moment` (C, at any scale) asks for, with the anchor `g` where it leaves something open.
 pub(super) fn anchored<const D: usize>(moment: &Matrix<D>, g: &Matrix<D>) -> Matrix<D> {
@@ -180,7 +183,7 @@ fn unit(vectors: &[[f64; 4]; 4], column: usize) -> [f64; 4] {
     u.map(|c| c / length)
 }
 
-fn of_quaternion(&[w, x, y, z]: &[f64; 4]) -> [[f64; 3]; 3] {
+pub(super) fn of_quaternion(&[w, x, y, z]: &[f64; 4]) -> [[f64; 3]; 3] {
     [
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
         [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],

@@ -132,6 +132,29 @@ proptest! {
     }
 
     #[test]
+    fn a_motion_of_control_points_near_a_line_is_followed_at_every_temperature(
+        p in points::<3>(6), x in prop::array::uniform(-1.0..1.0f64), along in rotation(), r in rotation(), s in 0.3f64..3.0,
+        thickness in -6.0..-2.0f64, shift in prop::array::uniform(-2.0..2.0f64), logits in prop::collection::vec(-15f32..15.0, 6),
+        t in prop::sample::select(vec![0.02, 0.1, 0.3, 1.0, 10.0, 100.0]),
+    ) {
+        let h = 10f64.powf(thickness);
+        // As long as a shape, and as thick as is said.
+        let stretched = |(i, p): (usize, &[f64; 3])| match i {
+            0 => [-1.0, 0.0, 0.0],
+            1 => [1.0, h, 0.0],
+            2 => [p[0], -h, h * p[2]],
+            _ => [p[0], h * p[1], h * p[2]],
+        };
+        let p = mapped(&along, [0.0; 3], &p.iter().enumerate().map(stretched).collect::<Vec<_>>());
+        for (transform, scale) in [(Transform::Rigid, 1.0), (Transform::Similarity, s), (Transform::Affine, 1.0)] {
+            let m = matrix::scaled(&r, scale);
+            let (q, expected) = (mapped(&m, shift, &p), mapped(&m, shift, &[x])[0]);
+            let y = landing(x, &deform(x, &p, &q, &logits, t, transform));
+            prop_assert!(close(y, expected, 1e-6), "{:?}: {:?} {:?}", transform, y, expected);
+        }
+    }
+
+    #[test]
     fn a_similarity_of_all_is_followed_by_similarity_and_affine(
         p in points::<3>(6), x in prop::array::uniform(-1.0..1.0f64), r in rotation(), s in 0.2f64..3.0,
         logits in prop::collection::vec(-15f32..15.0, 6), t in prop::sample::select(vec![0.02, 0.3, 1.0, 10.0]),
@@ -191,7 +214,7 @@ proptest! {
 
     #[test]
     fn the_best_rotation_is_at_least_as_good_as_any_other(c in prop::array::uniform3(prop::array::uniform(-1.0..1.0f64)), other in rotation()) {
-        let best = best_rotation(&c);
+        let best = rotation::best_rotation(&c);
         prop_assert!(matrix::trace_of_product(&best, &c) >= matrix::trace_of_product(&other, &c) - 1e-12);
     }
 }
@@ -243,6 +266,32 @@ fn coplanar_and_collinear_control_points_stay_finite_and_flat() {
         assert!(close(y, [2.0, 0.5, 0.0], 1e-6), "stretched along the line, rigid across it: {y:?}");
         let local = deform([0.0, 0.0, 0.7], &SQUARE, &SQUARE, &[0.1, 0.2, 0.3, 0.4], t, Transform::Rigid);
         assert!(close(local.displacement, [0.0; 3], 1e-9));
+    }
+}
+
+/// Control points on a line but for rounding: what a motion leaves open about it must not be made of that.
+#[test]
+fn rounding_beside_a_line_turns_nothing_about_it() {
+    let to = |degrees: f64| -> [f64; 3] {
+        [0.3 + degrees.to_radians().cos(), 0.2, 0.1 + degrees.to_radians().sin()]
+    };
+    for digits in [f64::from(f32::EPSILON), f64::EPSILON] {
+        let rounded = |v: f64, i: usize| v * (1.0 + digits * (7.0 * i as f64 + 3.0 * v).sin());
+        let line = |from: [f64; 3], to: [f64; 3]| -> Vec<[f64; 3]> {
+            let at = |i: usize| -> [f64; 3] {
+                std::array::from_fn(|k| from[k] + 0.2 * i as f64 * (to[k] - from[k]))
+            };
+            (0..6).map(|i| at(i).map(|v| rounded(v, i))).collect()
+        };
+        let p = line([0.3, 0.2, 0.1], to(20.0));
+        for step in 0..40 {
+            // Turned in the plane of y, so that the smallest rotation is about y; and not quite rigidly.
+            let q: Vec<[f64; 3]> = line([0.3, 0.2, 0.1], to(20.0 + f64::from(step)));
+            let q: Vec<_> =
+                q.iter().enumerate().map(|(i, q)| [q[0] + 1e-6 * (i as f64).sin(), q[1], q[2]]).collect();
+            let map = deform([0.0; 3], &p, &q, &[0.0; 6], 1.0, Transform::Rigid).map;
+            assert!((map[1][1] - 1.0).abs() < 1e-6, "{digits}, {step} degrees: {map:?}");
+        }
     }
 }
 

@@ -207,10 +207,30 @@ fn promise(source: &[u8], line: &Line<'_>) -> Option<u64> {
     (fields.len() > 1).then_some(count)
 }
 
+/// What programs call columns that are no scalar field.
+const USUAL: [&str; 13] = ["x", "y", "z", "r", "g", "b", "a", "rf", "gf", "bf", "nx", "ny", "nz"];
+
 /// The names in a header line, in lower case, if it has one for each column.
 fn column_names(line: &[u8], columns: usize) -> Option<Vec<String>> {
     let mut fields = Vec::new();
-    Separator::of(line.trim_ascii()).split(line, &mut fields);
+    let separator = Separator::of(line.trim_ascii());
+    separator.split(line, &mut fields);
     let name = |field: &Range<usize>| String::from_utf8_lossy(&line[field.clone()]).to_ascii_lowercase();
-    (fields.len() == columns).then(|| fields.iter().map(name).collect())
+    let mut names: Vec<String> = fields.iter().map(name).collect();
+    let more = names.len().checked_sub(columns)?;
+    if more > 0 {
+        // CloudCompare puts white space into names too ("Scalar field"): these words are one name.
+        let is_unusual = |name: &String| !USUAL.contains(&name.as_str());
+        let from = names.iter().position(is_unusual)?;
+        let words = names.get(from..=from + more)?;
+        if separator != Separator::WhiteSpace
+            || !names.iter().take(3).eq(["x", "y", "z"])
+            || !words.iter().all(is_unusual)
+        {
+            return None;
+        }
+        let one = words.join(" ");
+        names.splice(from..=from + more, [one]);
+    }
+    Some(names)
 }

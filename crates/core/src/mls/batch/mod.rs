@@ -27,10 +27,11 @@ mod oriented;
 mod rotation;
 mod start;
 
+use super::global::Global;
 use super::matrix::{identity, transposed, Matrix};
 use super::oriented::Oriented;
-use super::rotation::best_quaternion;
-use super::{Global, Transform, ANCHOR_WEIGHT};
+use super::rotation::{best_quaternion, ANCHOR_WEIGHT};
+use super::transform::Transform;
 use crate::geometry::Frame;
 use crate::machine::simd::loops::{multiply_add, multiversion_loops};
 use crate::machine::simd::{prefetch, Simd, WIDTH};

@@ -1,8 +1,8 @@
 //! Against the twin, one point at a time in double precision, on every instruction set of this machine.
 
 use super::super::moments::Moments;
-use super::super::rotation::anchored;
-use super::super::{best_rotation, matrix, Local, Mls};
+use super::super::rotation::{anchored, best_rotation};
+use super::super::{matrix, Local, Mls};
 use super::*;
 use crate::machine::simd::loops;
 use crate::softmax::{relative_weights, PackedWeights};
