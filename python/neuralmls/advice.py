@@ -13,7 +13,8 @@ from neuralmls.errors import ArgumentError
 from neuralmls.handles import Transform
 from neuralmls.orientations import Orientation, Rotations, Scales, as_orientations
 from neuralmls.report import Advice
-from neuralmls.session import Handles, Map, Session
+from neuralmls.session import Map, Session
+from neuralmls.settings import Handles
 from neuralmls.weights import Weights
 
 

@@ -48,8 +48,8 @@ def deform(
         transform : "rigid", "similarity" or "affine"
         temperature : float > 0
         handles : "auto", "exact", "soft", or a number from 0 to 1
-            How closely the control points arrive at their targets (see `Session`). "soft" is the paper's way, in which they
-            stop near them.
+            How closely the control points arrive at their targets (see `Session`). "soft" is the paper's way, in which
+            they stop near them.
         seed : int
             Of the network's training (neural and shape-aware weights).
 

@@ -100,7 +100,7 @@ class Session:
         *,
         by_order: bool = False,
     ) -> Self:
-        """Read control points of any kind: a session, a list of landmarks, files of other tools (docs/control-points.md).
+        """Read control points of any kind: a session, a list of landmarks, files of other tools.
 
         Parameters
         ----------
@@ -149,7 +149,7 @@ class Session:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """The settings, as the session file has them: weights with their parameters, transform, temperature, handles."""
+        """Weights with their parameters, transform, temperature, handles, as the session file has them."""
         found: dict[str, Any] = json.loads(self._core.settings)
         return found
 

@@ -1,4 +1,4 @@
-"""Settings of a session as keywords: passed on to the core as a session file has them, which refuses what is wrong with them."""
+"""Settings of a session as keywords: handed on as a session file has them, since the core checks those."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The options that say how to deform, shared by the commands that fit weights: what a person says goes before a session."""
+"""The options that say how to deform: what a person says goes before what a session has."""
 
 from __future__ import annotations
 
