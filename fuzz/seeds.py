@@ -62,7 +62,8 @@ def ply() -> dict[str, bytes]:
         "ascii": header("ascii") + ascii_rows.encode(),
         "little": header("binary_little_endian") + binary("<"),
         "big": header("binary_big_endian") + binary(">"),
-        "double": b"ply\nformat ascii 1.0\nCreated by hand\nelement vertex 1\nproperty double x\nproperty double y\nproperty double z\n"
+        "double": b"ply\nformat ascii 1.0\nCreated by hand\nelement vertex 1\n"
+        b"property double x\nproperty double y\nproperty double z\n"
         b"property list uchar float tags\nend_header\n1 2 3 2 0.5 0.25\n",
     }
 
