@@ -60,7 +60,7 @@ impl Deformer {
     ) -> PyResult<Deformer> {
         let (dim, transform) = (x.shape()[1], self::transform(transform)?);
         let (x, p, logits) = (x.as_slice()?, p.as_slice()?, logits.as_slice()?);
-        let bound = || neuralmls_core::Deformer::of_logits(copy_of(x), dim, p, copy_of(logits), transform);
+        let bound = || neuralmls_core::Deformer::of_logits(copy_of(x)?, dim, p, copy_of(logits)?, transform);
         Ok(Deformer { inner: bound().map_err(|error| from_core(error, None))?, dim })
     }
 
@@ -113,7 +113,7 @@ impl Deformer {
     ) -> PyResult<Deformer> {
         let tree = tree.map(|tree| &tree.0);
         let bind = |report: &mut dyn FnMut(f64) -> bool| {
-            neuralmls_core::Deformer::new(copy_of(x), weights, tree, transform, report)
+            neuralmls_core::Deformer::new(copy_of(x)?, weights, tree, transform, report)
         };
         Ok(Deformer { inner: run(py, progress, bind)?, dim })
     }
