@@ -135,7 +135,8 @@ impl Deformer {
             Some(out) => out,
             None => zeros()?.call1(((n, d),))?.cast_into::<PyArray2<f64>>()?,
         };
-        let maps = maps.then(|| zeros()?.call1(((n, d, d),))?.cast_into::<PyArray3<f64>>().map_err(PyErr::from));
+        let maps =
+            maps.then(|| zeros()?.call1(((n, d, d),))?.cast_into::<PyArray3<f64>>().map_err(PyErr::from));
         let maps = maps.transpose()?;
         {
             let taken = |_| argument("out: another call reads or writes this array at the same time");

@@ -1,15 +1,16 @@
 //! Maps: what a fitted session does, says, and keeps.
 
 use neuralmls_session::{
-    read, Bounds, ControlPoint, ControlPoints, ErrorKind, HandlesSetting, Held, Map, Orientation, Session, Settings,
-    Transform, WeightsSettings,
+    read, Bounds, ControlPoint, ControlPoints, ErrorKind, HandlesSetting, Held, Map, Orientation, Session,
+    Settings, Transform, WeightsSettings,
 };
 
 const CORNERS: [[f64; 3]; 5] =
     [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.2, -0.8, -0.5]];
 
 fn session(weights: WeightsSettings) -> Session {
-    let list = CORNERS.iter().enumerate().map(|(i, at)| ControlPoint::new(format!("p{}", i + 1), at.to_vec()));
+    let list =
+        CORNERS.iter().enumerate().map(|(i, at)| ControlPoint::new(format!("p{}", i + 1), at.to_vec()));
     let mut session = Session::new(ControlPoints::new(3, list.collect()).unwrap());
     session.settings.weights = weights;
     session
@@ -125,7 +126,10 @@ fn what_a_file_cannot_hold_is_what_is_reported() {
     let held = Held { format: "PLY", round: &round, step: 0.5 };
     let report = map.report(&map.aim().unwrap(), Some(&held)).unwrap();
     assert!((report.control_points[0].distance_to_target - 0.05).abs() < 1e-6);
-    assert!(report.warnings[0].contains("this PLY file holds coordinates in steps of 0.5 here"), "{report:?}");
+    assert!(
+        report.warnings[0].contains("this PLY file holds coordinates in steps of 0.5 here"),
+        "{report:?}"
+    );
 }
 
 #[test]
@@ -158,7 +162,8 @@ fn advice_names_a_fold_and_who_is_about_it() {
 #[test]
 fn files_that_are_no_maps_are_refused_in_a_sentence() {
     let whole = fitted(&session(neural())).to_bytes();
-    let mut hostile: Vec<Vec<u8>> = vec![Vec::new(), b"v 0 0 0\n".to_vec(), whole[..whole.len() / 2].to_vec()];
+    let mut hostile: Vec<Vec<u8>> =
+        vec![Vec::new(), b"v 0 0 0\n".to_vec(), whole[..whole.len() / 2].to_vec()];
     hostile.push((u64::MAX.to_le_bytes()).to_vec());
     let (at, _) = whole.windows(7).enumerate().find(|(_, bytes)| bytes == b"weight0").unwrap();
     let mut renamed = whole.clone();
