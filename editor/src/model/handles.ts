@@ -1,4 +1,4 @@
-/** Control points that arrive: where to aim so that they do, by the core (crates/core/src/exact.rs). */
+/** Control points that arrive: where to aim so that they do, by the core (crates/core/src/aim). */
 
 import type { Settings } from "./settings.ts";
 

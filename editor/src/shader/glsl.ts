@@ -137,7 +137,7 @@ mat3 bestRotation(mat3 c) {
 }
 
 // What a turned control point counts: the square of its weight times that of its frame, over the second-largest weight unless the
-// dominant one is turned (crates/core/src/mls/turned.rs).
+// dominant one is turned (crates/core/src/mls/oriented.rs).
 float shareOf(int i, float logit) {
   float r = relative(i, logit), w = i == k ? first : second * r;
   return squareOf(i) * w * (squareOf(k) > 0.0 ? w : r);

@@ -1,4 +1,4 @@
-/** Control points that carry a rotation, as `crates/core/src/mls/turned.rs` has them. */
+/** Control points that carry a rotation, as `crates/core/src/mls/oriented.rs` has them. */
 
 import { rotationOf, type Rotation, type Turn } from "../model/turn.ts";
 

@@ -1,4 +1,4 @@
-//! One kernel, compiled for several instruction sets, the best of which is chosen when it runs.
+//! Vectorised kernels (SIMD): one kernel, compiled for several instruction sets, the best of which is chosen when it runs.
 //!
 //! A kernel is written once over [`Lanes`], sixteen numbers in registers, and `#[inline(always)]`. [`multiversion!`] compiles it
 //! for each instruction set and calls the version that was detected.
