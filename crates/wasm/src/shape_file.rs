@@ -1,7 +1,7 @@
 //! Shapes read from bytes.
 
 use js_sys::{Array, Float64Array, Function, Uint32Array, Uint8Array};
-use neuralmls_core::{advice, placement};
+use neuralmls_core::{placement, places};
 use neuralmls_shapes::Shape;
 use wasm_bindgen::prelude::*;
 
@@ -87,7 +87,7 @@ impl ShapeFile {
     /// Where a face names no point.
     pub fn sample(&self, count: usize) -> Result<Float64Array, JsError> {
         let faces = self.0.faces().unwrap_or_default();
-        advice::places(self.0.positions(), self.0.dim(), faces, count)
+        places(self.0.positions(), self.0.dim(), faces, count)
             .map(|places| Float64Array::from(&places[..]))
             .map_err(refused)
     }
