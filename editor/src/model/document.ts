@@ -50,10 +50,11 @@ export function toDocument(session: Session, dim: 1 | 2 | 3): SessionDocument {
     format: "neuralmls-control-points",
     version: 2,
     control_points: points.map((point) => {
-      const { name, position, target, orientation, weight, locked, others } = point;
+      const { name, position, target, orientation, weight, locked } = point;
+      const { rotation, ...others } = (point.others ?? {}) as Partial<PointEntry>;
       const twin = twinOf.get(point.id);
       const places = { position: position.slice(0, dim), target: target.slice(0, dim) };
-      const carried = orientation && orientationKeys(orientation, dim);
+      const carried = orientation && orientationKeys(orientation, rotation, dim);
       return { ...others, name, ...places, ...carried, weight, locked, ...(twin !== undefined && { mirror_of: twin }) };
     }),
     settings: settingsEntry(settings),
@@ -97,10 +98,10 @@ function editorOf({ editor }: Pick<SessionDocument, "editor">): { mirror?: unkno
 
 function pointFrom(entry: PointEntry, i: number): ControlPoint {
   const { name, position, target, rotation, scale, weight, locked, mirror_of: _, ...others } = entry;
+  const { axis, degrees, ...unknown } = rotation ?? { degrees: 0 };
   const orientation: Orientation | undefined =
-    rotation || scale !== undefined
-      ? { axis: pad(rotation?.axis ?? [0, 0, 1]), degrees: rotation?.degrees ?? 0, scale: scale ?? 1 }
-      : undefined;
+    rotation || scale !== undefined ? { axis: pad(axis ?? [0, 0, 1]), degrees, scale: scale ?? 1 } : undefined;
+  if (Object.keys(unknown).length > 0) Object.assign(others, { rotation: unknown });
   return {
     id: i + 1,
     name,
@@ -113,9 +114,10 @@ function pointFrom(entry: PointEntry, i: number): ControlPoint {
   };
 }
 
-function orientationKeys({ axis, degrees, scale }: Orientation, dim: number): Pick<PointEntry, "rotation" | "scale"> {
+function orientationKeys({ axis, degrees, scale }: Orientation, others: object | undefined, dim: number): Partial<PointEntry> {
   // In the plane the axis is (0, 0, 1), and a rotation about its opposite is one backwards.
-  const rotation = dim === 3 ? { axis: [...axis], degrees } : { degrees: axis[2] < 0 ? -degrees : degrees };
+  const plane = { degrees: axis[2] < 0 ? -degrees : degrees };
+  const rotation = { ...others, ...(dim === 3 ? { axis: [...axis], degrees } : plane) };
   return { ...(dim > 1 && { rotation }), ...((scale !== 1 || dim === 1) && { scale }) };
 }
 

@@ -33,10 +33,19 @@ export function readSession(files: Files, names: readonly string[], box: { min: 
     if (names.length === 2) made.push(named(names, () => made[0].joined(made[1], false)));
     const session = made.at(-1)!;
     const notes = [...session.notes(), ...named(names, () => session.check(box.min, box.max))];
-    return { document: JSON.parse(session.to_json()) as SessionDocument, notes };
+    const document = JSON.parse(session.to_json()) as SessionDocument;
+    named(names, () => refuseLargeSeed(document));
+    return { document, notes };
   } finally {
     for (const session of made) session.free();
   }
+}
+
+/** JavaScript's numbers would change it, and with it the weights. */
+function refuseLargeSeed({ settings }: SessionDocument): void {
+  const { seed = 0 } = (settings?.weights ?? {}) as { seed?: number };
+  if (Number.isSafeInteger(seed)) return;
+  throw new Error(`settings: seed: in a browser expected a whole number up to ${Number.MAX_SAFE_INTEGER}`);
 }
 
 export function rules(): Rules {
