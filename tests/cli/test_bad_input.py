@@ -150,8 +150,8 @@ CLASSIC = ("--weights", "inverse-distance")
         (("--frobnicate",), ("--frobnicate", "deform --help")),
         (("too", "many"), ("out.obj: expected a folder for 3 shapes",)),
         (("--handles", "hard"), ("--handles", "auto, exact, soft or a number", "'hard'")),
-        (("--handles", "1.5"), ("handles", "0 to 1", "1.5")),
-        (("--handles", "nan"), ("handles", "NaN")),
+        (("--handles", "1.5"), ("handles", "at most 1", "1.5")),
+        (("--handles", "nan"), ("handles: expected a finite number", "nan")),
     ],
 )
 def test_wrong_options(refused, options, words):
