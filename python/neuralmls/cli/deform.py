@@ -11,9 +11,10 @@ import click
 
 from neuralmls.cli import console, inputs, moves, options, outputs, settings
 from neuralmls.cli.stages import Stages
-from neuralmls.errors import ArgumentError, NeuralMLSError
+from neuralmls.errors import ArgumentError, FileError, NeuralMLSError
 
 if TYPE_CHECKING:
+    from neuralmls.deformer import Floats
     from neuralmls.session import Map, Session
     from neuralmls.shape import Shape
 
@@ -189,13 +190,23 @@ def _bent(shape: Shape, file: Path, map: Map, stages: Stages, *, check: bool, fo
         with stages.stage("check"):
             advice = map.advise(shape)
     with stages.stage("write"):
-        if file == outputs.STANDARD_OUTPUT:
-            sys.stdout.buffer.write(shape.encode(positions, maps=maps)[0])
-            sys.stdout.buffer.flush()
-            written, kept = list[str](), list[str]()
-        else:
-            written, kept = outputs.write_shape(shape, file, positions, maps=maps, force=force)
+        written, kept = _write(shape, file, positions, maps, force=force)
     return summary.summary(shape, file, map, told, advice if check else None, written, kept)
+
+
+def _write(
+    shape: Shape, file: Path, positions: Floats, maps: Floats | None, *, force: bool
+) -> tuple[list[str], list[str]]:
+    """Write the shape; return the files written, and warnings of others that are kept or missing."""
+    try:
+        if file != outputs.STANDARD_OUTPUT:
+            return outputs.write_shape(shape, file, positions, maps=maps, force=force)
+        data, _ = shape.encode(positions, maps=maps)
+    except ArgumentError as error:  # numbers that the file's type cannot hold
+        raise FileError(f"{shape.path}: {error}") from None
+    sys.stdout.buffer.write(data)
+    sys.stdout.buffer.flush()
+    return [], []
 
 
 def _tell(
