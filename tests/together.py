@@ -39,7 +39,7 @@ def control_points() -> nm.ControlPoints:
 
 
 def write(folder: Path) -> None:
-    """Write FILES. The shirt's even rows are vertices of the body, and so are all landmarks and a corner of the badge."""
+    """Write FILES. The shirt's even rows are vertices of the body; so are the landmarks, and a corner of the badge."""
     body, faces = _tube(rows=160, around=90, low=0.0, high=1.8)
     lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in body.tolist()]
     lines += [f"f {a} {b} {c}" for a, b, c in (faces + 1).tolist()]
