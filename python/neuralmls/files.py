@@ -7,6 +7,7 @@ import io
 import os
 import shutil
 import stat
+import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -51,6 +52,22 @@ def read_bytes(path: Path, *, links: bool = True) -> bytes:
     """
     with _open(path, links=links) as file:
         return file.read()
+
+
+def read_standard_input() -> bytes:
+    """Return all that comes from standard input.
+
+    Raises
+    ------
+    FileError
+        It is closed, or cannot be read.
+    """
+    if sys.stdin is None:
+        raise FileError("standard input: cannot read: it is closed")
+    try:
+        return sys.stdin.buffer.read()
+    except OSError as error:
+        raise FileError(f"standard input: cannot read: {error.strerror or error}") from error
 
 
 def _open(path: Path, *, links: bool = True) -> BinaryIO:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 from neuralmls import _core
 from neuralmls.errors import ControlPointError, FileError
-from neuralmls.files import as_path, read_bytes, write_atomically
+from neuralmls.files import as_path, read_bytes, read_standard_input, write_atomically
+
+STANDARD_INPUT = Path("-")
 
 
 def read(path: str | os.PathLike[str]) -> _core.Read:
-    """Read a file of any kind of control points.
+    """Read a file of any kind of control points, - from standard input.
 
     Raises
     ------
@@ -20,6 +23,8 @@ def read(path: str | os.PathLike[str]) -> _core.Read:
         It is well-formed, but its control points cannot be used.
     """
     source = as_path("path", path)
+    if source == STANDARD_INPUT:
+        return decode(read_standard_input(), "standard input")
     try:
         data = read_bytes(source)
     except FileNotFoundError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -20,17 +21,18 @@ def changes_of(weights: str | None, parameters: dict[str, float | None], **other
     unknown = parameters.keys() - set(PARAMETERS)
     if unknown:
         raise TypeError(f"unexpected keyword argument '{min(unknown)}'")
-    chosen = {"kind": weights} if weights is not None else {}
-    changes = {key: _plain(value) for key, value in others.items()}
-    chosen |= {key: _plain(value) for key, value in parameters.items() if value is not None}
+    changes = {name: _plain(name, value) for name, value in others.items()}
+    chosen = {name: _plain(name, value) for name, value in parameters.items() if value is not None}
+    if weights is not None:
+        chosen["kind"] = _plain("weights", weights)
     if chosen:
         changes["weights"] = chosen
-    try:
-        return json.dumps(changes, allow_nan=False)
-    except (TypeError, ValueError) as error:
-        raise ArgumentError(f"settings: expected finite numbers and names, found {changes!r}: {error}") from None
+    return json.dumps(changes)
 
 
-def _plain(value: Any) -> Any:
-    """A number of NumPy's as Python's own."""
-    return value.item() if isinstance(value, np.generic) else value
+def _plain(name: str, value: Any) -> Any:
+    """A number or name as JSON can hold it; the core says what is wrong with any other."""
+    plain = value.item() if isinstance(value, np.generic) else value
+    if not isinstance(plain, (str, int, float)) or (isinstance(plain, float) and not math.isfinite(plain)):
+        raise ArgumentError(f"{name}: expected a finite number or a name, found {value!r}")
+    return plain

@@ -69,7 +69,7 @@ def test_folder_as_shape(refused, here):
         ("target.csv", "name,x,y,z,target_x\na,0,0,0,1\n", ("line 1", "target_y")),
         ("half.csv", "name,x,y,z,target_x,target_y,target_z\na,0,0,0,1,,2\n", ("line 2", "target_y", "'a'")),
         ("huge.csv", HEADER + "a,0,0,0\nb,1e300,0,0\n", ("huge.csv, for shape.obj", "the position of 'b'", "1e+150")),
-        ("points.txt", HEADER + "a,0,0,0\n", (".json or .csv",)),
+        ("points.txt", "control points, some day\n", ("points.txt: line 1", "name,x,y,z", "control points")),
     ],
 )
 def test_bad_control_points(refused, here, name, text, words):
@@ -127,11 +127,11 @@ CLASSIC = ("--weights", "inverse-distance")
         (("--steps", "many"), ("--steps", " int", "deform --help")),
         (("--weights", "magic"), ("--weights", "'magic'", "inverse-distance")),
         (("--transform", "projective"), ("--transform", "'projective'", "similarity")),
-        (("--alpha", "2"), ("--alpha", "inverse-distance", "neural")),
-        (("--epsilon", "2"), ("--epsilon", "inverse-distance")),
-        ((*CLASSIC, "--width", "64"), ("--width", "neural", "inverse-distance")),
-        ((*CLASSIC, "--steps", "64"), ("--steps", "neural")),
-        ((*CLASSIC, "--seed", "1"), ("--seed", "neural")),
+        (("--alpha", "2"), ("alpha belongs to inverse-distance", "neural")),
+        (("--epsilon", "2"), ("epsilon belongs to inverse-distance",)),
+        ((*CLASSIC, "--width", "64"), ("width belongs to neural", "inverse-distance")),
+        ((*CLASSIC, "--steps", "64"), ("steps belongs to neural",)),
+        ((*CLASSIC, "--seed", "1"), ("seed belongs to neural",)),
         (("--move", "tpo=0,1,0"), ("'tpo'", "nearest name is 'top'")),
         (("--move", "top=0,1"), ("'top'", "3 finite numbers")),
         (("--move", "top=0,1,inf"), ("'top'", "finite")),
@@ -148,7 +148,10 @@ CLASSIC = ("--weights", "inverse-distance")
         (("--turn", "y,40"), ("NAME=AXIS,DEGREES", "y,40")),
         (("--turn", "top=y,40", "--turn", "top=y,50"), ("'top'", "twice")),
         (("--frobnicate",), ("--frobnicate", "deform --help")),
-        (("too", "many"), ("unexpected", "deform --help")),
+        (("too", "many"), ("out.obj: expected a folder for 3 shapes",)),
+        (("--handles", "hard"), ("--handles", "auto, exact, soft or a number", "'hard'")),
+        (("--handles", "1.5"), ("handles", "at most 1", "1.5")),
+        (("--handles", "nan"), ("handles: expected a finite number", "nan")),
     ],
 )
 def test_wrong_options(refused, options, words):

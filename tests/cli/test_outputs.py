@@ -101,10 +101,13 @@ def test_file_where_a_folder_should_be(refused):
     refused(1, "demo", "-o", "points.csv", words=("points.csv", "cannot make this folder"))
 
 
-def test_folder_as_output(refused, here):
-    (here / "out.obj").mkdir()
-    refused(1, *DEFORM, "-o", "out.obj", words=("out.obj", "folder"))
-    refused(1, *DEFORM, "-o", "out.obj", "--force", words=("out.obj", "folder"))
+def test_a_folder_where_a_file_is_to_be(refused, here):
+    (here / "out" / "shape.obj").mkdir(parents=True)
+    (here / "p.json").mkdir()
+    for force in ((), ("--force",)):
+        refused(1, *DEFORM, "-o", "out", *force, words=("out/shape.obj", "folder"))
+        refused(1, "points", "shape.obj", "-o", "p.json", *force, words=("p.json", "folder"))
+        refused(1, "fit", *DEFORM[1:4], "-o", "out", *force, words=("out", "folder"))
 
 
 def test_folder_that_is_not_writable(refused, here):

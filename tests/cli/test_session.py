@@ -48,7 +48,7 @@ def expected(adherence=0.5, transform="similarity", temperature=0.7):
 
 def test_what_is_set_in_the_editor_holds(run, session):
     told = json.loads(run(*DEFORM, "-o", "out.obj", "--json").out)
-    assert (told["adherence"], told["transform"], told["temperature"]) == (0.5, "similarity", 0.7)
+    assert (told["handles"], told["transform"], told["temperature"]) == (0.5, "similarity", 0.7)
     assert (told["weights"]["kind"], told["weights"]["seed"], told["session"]) == ("neural", 3, "session.json")
     np.testing.assert_allclose(nm.read("out.obj").positions, expected(), rtol=0, atol=1e-6)
     assert "settings of session.json" in run(*DEFORM, "-o", "out.obj", "--force").out
@@ -57,10 +57,10 @@ def test_what_is_set_in_the_editor_holds(run, session):
 def test_options_go_before_it(run, session):
     options = ("--handles", "soft", "--transform", "rigid", "--temperature", "1.0")  # a default, but said
     told = json.loads(run(*DEFORM, "-o", "out.obj", "--json", *options).out)
-    assert (told["adherence"], told["transform"], told["temperature"]) == (0.0, "rigid", 1.0)
+    assert (told["handles"], told["transform"], told["temperature"]) == ("soft", "rigid", 1)
     np.testing.assert_allclose(nm.read("out.obj").positions, expected(0.0, "rigid", 1.0), rtol=0, atol=1e-6)
     told = json.loads(run(*DEFORM, "-o", "exact.obj", "--json", "--handles", "exact", "--seed", "4").out)
-    assert (told["adherence"], told["weights"]["seed"]) == (1.0, 4)
+    assert (told["handles"], told["weights"]["seed"]) == ("exact", 4)
 
 
 def test_classic_weights_are_inverse_distance_ones(run, session):
@@ -77,7 +77,7 @@ def test_what_an_older_session_does_not_say_is_as_by_default(run, session, here)
     document["editor"] = {"settings": {"neural": {"width": 64}}}
     (here / "session.json").write_text(json.dumps(document))
     told = json.loads(run(*DEFORM, "-o", "out.obj", "--json").out)
-    assert (told["adherence"], told["transform"], told["temperature"]) == (1.0, "rigid", 1.0)
+    assert (told["handles"], told["transform"], told["temperature"]) == ("auto", "rigid", 1)
 
 
 @pytest.mark.parametrize(

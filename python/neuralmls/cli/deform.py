@@ -11,9 +11,10 @@ import click
 
 from neuralmls.cli import console, inputs, moves, options, outputs, settings
 from neuralmls.cli.stages import Stages
-from neuralmls.errors import ArgumentError, NeuralMLSError
+from neuralmls.errors import ArgumentError, FileError, NeuralMLSError
 
 if TYPE_CHECKING:
+    from neuralmls.deformer import Floats
     from neuralmls.session import Map, Session
     from neuralmls.shape import Shape
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 @options.shapes
 @options.session
 @click.option("--map", "saved", type=options.PATH, help="A map that `neuralmls fit` wrote, in the place of a fit.")
-@options.output("The file to write, of the shape's format, or a folder; - for standard output.")
+@options.output_or_folder("The file to write, of the shape's format, or a folder; - for standard output.")
 @settings.settings_options(*settings.WEIGHTS, *settings.MOTION)
 @click.option(
     "--move",
@@ -50,7 +51,7 @@ def deform(
     targets: Path | None,
     by_order: bool,
     saved: Path | None,
-    output: Path,
+    output: str,
     said: dict[str, Any],
     offsets: Sequence[str],
     turns: Sequence[str],
@@ -70,31 +71,41 @@ def deform(
     """
     given = [path for path in (*shapes, points, targets, saved) if path is not None]
     inputs.one_standard_input(given)
-    files = outputs.of_shapes(shapes, output)
+    files, folder = outputs.of_shapes(shapes, output)
     for file in files:
-        outputs.check_output(file, force=force, inputs=given)
+        outputs.check_output(file, force=force, inputs=given, folder_comes=folder is not None)
     stages, failed = Stages(quiet=quiet), Failed(several=len(shapes) > 1)
     with stages.stage("read"):
-        session, ready = _session(points, targets, by_order, saved)
+        session, ready, notes = _session(points, targets, by_order, saved)
         source = str(points) if points is not None and session.has_settings else None
         session = inputs.settings_of(said, session)
         session = session.replace(points=moves.moved(session.points, offsets, turns))
+        ready = None if ready is None else ready.with_session(session)
+        moved = bool((session.points.targets != session.points.sources).any()) or session.points.is_oriented
         read = []
         for path, file in zip(shapes, files, strict=True):
             with failed:
-                read.append((_read(path, file, force=force), file))
-    warnings = _warnings(session, points or saved, [shape for shape, _ in read])
-    if ready is None and read:
+                shape = _read(path, file, moved=moved, force=force)
+                inputs.check_points(session.points, points or saved, shape)
+                read.append((shape, file))
+    if not read:
+        failed.raise_last()
+    frame = (session if ready is None else ready.session).frame
+    warnings = [*notes, *inputs.check_together(session.points, [shape for shape, _ in read], frame)]
+    if not moved:
+        warnings.append("no control point is moved, so that the output is the input")
+    for sentence in warnings:
+        console.warning(sentence)
+    if folder is not None:
+        outputs.make_folder(folder)
+    if ready is None:
         with stages.stage("bind" if session.weights == "inverse-distance" else "train") as report:
             ready = session.fit(*(shape for shape, _ in read), progress=report)
-    elif ready is not None:
-        ready = ready.with_session(session)
     results = []
     for shape, file in read:
-        assert ready is not None
         with failed:
             results.append(_bent(shape, file, ready, stages, check=check, force=force))
-    for sentence in dict.fromkeys([*warnings, *(warning for told in results for warning in told["warnings"])]):
+    for sentence in dict.fromkeys(warning for told in results for warning in told["warnings"]):
         console.warning(sentence)
     _tell(results, stages, warnings, source, json=json, quiet=quiet, verbose=verbose)
     failed.raise_last()
@@ -126,26 +137,30 @@ class Failed:
 
 def _session(
     points: Path | None, targets: Path | None, by_order: bool, saved: Path | None
-) -> tuple[Session, Map | None]:
-    """The session as files have it, and the map that was fitted already."""
+) -> tuple[Session, Map | None, tuple[str, ...]]:
+    """The session as files have it, the map that was fitted already, and what reading left out."""
     from neuralmls.session import Map
 
     if points is None and saved is None:
         raise ArgumentError("--points: expected a file of control points, or a fitted map with --map")
+    if points is None and (targets is not None or by_order):
+        raise ArgumentError("--points: expected a file of control points, which --targets and --by-order belong to")
     session = None if points is None else inputs.read_session(points, targets, by_order=by_order)
     if saved is None:
         assert session is not None
-        return session, None
+        return session, None, session.notes
     ready = Map.load(saved)
     if session is None:
-        return ready.session, ready
-    kept = ready.session.replace(points=session.points)
-    if session.has_settings:
-        kept = kept.replace(**{key: session.settings[key] for key in ("transform", "temperature", "handles")})
-    return kept, ready
+        return ready.session, ready, ()
+    said = {key: session.settings[key] for key in ("transform", "temperature", "handles") if session.has_settings}
+    try:
+        ready = ready.with_session(ready.session.replace(points=session.points, **said))
+    except ArgumentError as error:
+        raise ArgumentError(f"{points}, for {saved}: {error}") from None
+    return ready.session, ready, session.notes
 
 
-def _read(path: Path, file: Path, *, force: bool) -> Shape:
+def _read(path: Path, file: Path, *, moved: bool, force: bool) -> Shape:
     """A shape that can be written to the file."""
     shape = inputs.read_shape(path)
     if file == outputs.STANDARD_OUTPUT:
@@ -156,20 +171,9 @@ def _read(path: Path, file: Path, *, force: bool) -> Shape:
             )
         return shape
     outputs.check_ending(file, shape.extensions, f"a bent {shape.format} file (formats are not converted)")
-    for name in shape.side_files(file.stem):
-        outputs.check_output(file.parent / name, force=force)
+    for name in shape.side_files(file.stem) if moved else ():
+        outputs.check_output(file.parent / name, force=force, folder_comes=not file.parent.exists())
     return shape
-
-
-def _warnings(session: Session, file: Path | None, shapes: Sequence[Shape]) -> list[str]:
-    """What a person should know of the control points before anything is fitted."""
-    warnings = list(session.notes)
-    for shape in shapes:
-        warnings += inputs.check_points(session.points, file, shape)
-    still = session.points.targets.tolist() == session.points.sources.tolist() and not session.points.is_oriented
-    if still:
-        warnings.append("no control point is moved, so that the output is the input")
-    return warnings
 
 
 def _bent(shape: Shape, file: Path, map: Map, stages: Stages, *, check: bool, force: bool) -> dict[str, Any]:
@@ -186,13 +190,23 @@ def _bent(shape: Shape, file: Path, map: Map, stages: Stages, *, check: bool, fo
         with stages.stage("check"):
             advice = map.advise(shape)
     with stages.stage("write"):
-        if file == outputs.STANDARD_OUTPUT:
-            sys.stdout.buffer.write(shape.encode(positions, maps=maps)[0])
-            sys.stdout.buffer.flush()
-            written, kept = list[str](), list[str]()
-        else:
-            written, kept = outputs.write_shape(shape, file, positions, maps=maps, force=force)
+        written, kept = _write(shape, file, positions, maps, force=force)
     return summary.summary(shape, file, map, told, advice if check else None, written, kept)
+
+
+def _write(
+    shape: Shape, file: Path, positions: Floats, maps: Floats | None, *, force: bool
+) -> tuple[list[str], list[str]]:
+    """Write the shape; return the files written, and warnings of others that are kept or missing."""
+    try:
+        if file != outputs.STANDARD_OUTPUT:
+            return outputs.write_shape(shape, file, positions, maps=maps, force=force)
+        data, _ = shape.encode(positions, maps=maps)
+    except ArgumentError as error:  # numbers that the file's type cannot hold
+        raise FileError(f"{shape.path}: {error}") from None
+    sys.stdout.buffer.write(data)
+    sys.stdout.buffer.flush()
+    return [], []
 
 
 def _tell(

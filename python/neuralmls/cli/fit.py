@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 import click
@@ -47,10 +48,9 @@ def fit(
     stages = Stages(quiet=quiet)
     session = inputs.settings_of(said, inputs.read_session(points, targets, by_order=by_order))
     read = [inputs.read_shape(path) for path in shapes]
-    for sentence in [
-        *session.notes,
-        *(note for shape in read for note in inputs.check_points(session.points, points, shape)),
-    ]:
+    for shape in read:
+        inputs.check_points(session.points, points, shape)
+    for sentence in [*session.notes, *inputs.check_together(session.points, read, session.frame)]:
         console.warning(sentence)
     with stages.stage("train") as report:
         map = session.fit(*read, progress=report)
@@ -60,4 +60,5 @@ def fit(
     if not quiet:
         count = len(session.points)
         console.line(f"{output}: a map of {count:,} control points, {session.weights} weights", sys.stdout)
-        console.line(f"Try: neuralmls deform {shapes[0]} --map {output} -o bent{shapes[0].suffix}", sys.stdout)
+        tried = f"{quote(str(shapes[0]))} --map {quote(str(output))} -o bent{shapes[0].suffix}"
+        console.line(f"Try: neuralmls deform {tried}", sys.stdout)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from neuralmls.errors import ArgumentError, ControlPointError, FileError
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from neuralmls.control_points import ControlPoints
     from neuralmls.session import Session
     from neuralmls.shape import Shape
@@ -26,9 +28,10 @@ def read_shape(path: Path) -> Shape:
     FileError
         It cannot be read, or all of its vertices are in one place, so that there is nothing to measure by.
     """
+    from neuralmls.files import read_standard_input
     from neuralmls.shape import decode, read
 
-    shape = decode(sys.stdin.buffer.read(), path) if path == STANDARD_INPUT else read(path)
+    shape = decode(read_standard_input(), Path("standard input")) if path == STANDARD_INPUT else read(path)
     check_size(shape)
     return shape
 
@@ -92,6 +95,23 @@ def check_points(points: ControlPoints, file: Path | None, shape: Shape) -> list
         return points.check(shape.bounds)
     except ControlPointError as error:
         raise ControlPointError(f"{'the map' if file is None else file}, for {shape.path}: {error}") from None
+
+
+def check_together(
+    points: ControlPoints, shapes: Sequence[Shape], frame: NDArray[np.float64] | None = None
+) -> list[str]:
+    """Warn of control points that do not fit shapes which one map bends: in the box around all of them and its frame.
+
+    Raises
+    ------
+    ControlPointError
+        As `check_points`, which names the files.
+    """
+    boxes = [shape.bounds for shape in shapes] + ([] if frame is None else [frame])
+    low, high = boxes[0]
+    for box in boxes[1:]:
+        low, high = low.clip(max=box[0]), high.clip(min=box[1])
+    return points.check([low, high])
 
 
 def one_standard_input(paths: Iterable[Path | None]) -> None:

@@ -23,8 +23,13 @@ shapes = click.argument("shapes", metavar="SHAPE...", type=PATH, nargs=-1, requi
 
 
 def output(help: str) -> Decorator[Any]:
-    """Return the option that names the file or folder to write."""
+    """Return the option that names the file to write."""
     return click.option("--output", "-o", type=PATH, required=True, help=help)
+
+
+def output_or_folder(help: str) -> Decorator[Any]:
+    """Return the option that names the file or folder to write, as it was said: a / at its end makes it a folder."""
+    return click.option("--output", "-o", type=click.Path(), required=True, help=help)
 
 
 def points(help: str) -> Decorator[Any]:

@@ -18,33 +18,37 @@ if TYPE_CHECKING:
 STANDARD_OUTPUT = Path("-")
 
 
-def of_shapes(shapes: Sequence[Path], output: Path) -> list[Path]:
-    """Return the file to write for each shape: `output` itself for one, else files of their names in that folder.
+def of_shapes(shapes: Sequence[Path], output: str) -> tuple[list[Path], Path | None]:
+    """Return the file to write for each shape, and the folder that they are to be in, where it is one.
+
+    One shape is written to `output` itself, unless that is a folder or ends as one; several by their names in it.
 
     Raises
     ------
     ArgumentError
-        Two of them have the same name, or several are to go to standard output.
-    FileError
-        The folder cannot be made.
+        Two of them have the same name, one has none, or several are to go to standard output or to one file.
     """
-    in_folder = len(shapes) > 1 or output.is_dir()
-    if not in_folder:
-        return [output]
-    if output == STANDARD_OUTPUT:
+    path = Path(output)
+    is_folder = output.endswith(("/", os.sep)) or os.path.isdir(output)
+    if len(shapes) == 1 and not is_folder:
+        return [path], None
+    if path == STANDARD_OUTPUT:
         raise ArgumentError("standard output takes one file: name a folder for several shapes")
-    names = [path.name for path in shapes]
-    for path in shapes:
-        if names.count(path.name) > 1:
-            raise ArgumentError(f"{output}: two shapes are called '{path.name}', and would be one file there")
-    make_folder(output)
-    return [output / name for name in names]
+    if not is_folder and path.suffix and path.suffix.lower() in {shape.suffix.lower() for shape in shapes}:
+        raise ArgumentError(f"{output}: expected a folder for {len(shapes)} shapes, found the name of one file")
+    names = [shape.name for shape in shapes]
+    for name in names:
+        if name == STANDARD_OUTPUT.name:
+            raise ArgumentError(f"{output}: what comes from standard input has no name: name an output file")
+        if names.count(name) > 1:
+            raise ArgumentError(f"{output}: two shapes are called '{name}', and would be one file there")
+    return [path / name for name in names], path
 
 
-def check_output(path: Path, *, force: bool, inputs: Iterable[Path] = ()) -> None:
+def check_output(path: Path, *, force: bool, inputs: Iterable[Path] = (), folder_comes: bool = False) -> None:
     """Refuse a path that is a folder, is in none or in one that is not writable, or has a file already.
 
-    So is one whose name the disk does not take.
+    So is one whose name the disk does not take. Where the `folder_comes` later, it need not be there.
 
     Raises
     ------
@@ -69,6 +73,8 @@ def check_output(path: Path, *, force: bool, inputs: Iterable[Path] = ()) -> Non
     if path.is_file() and not force:
         raise ArgumentError(f"{path}: there is such a file already; --force overwrites it")
     folder = path.parent
+    if folder_comes and not os.path.lexists(folder):
+        return
     if not folder.is_dir():
         raise FileError(f"{path}: cannot write here: there is no folder '{folder}'")
     if not os.access(folder, os.W_OK):

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from math import floor, log10
 from pathlib import Path
+from textwrap import wrap
 from typing import Any, TextIO
 
 from neuralmls.cli import console
@@ -124,7 +125,8 @@ def _handles(told: dict[str, Any]) -> list[tuple[str, str]]:
     """What took the control points to their targets, or why nothing did; one thing a line."""
     soft = told["soft"]
     lines = [told["arrival"]] if soft is None else ["left soft:", *soft.split("; ")]
-    if told.get("session"):
+    lines = [part for line in lines for part in wrap(line, 60)]
+    if told["session"] is not None:
         lines.append(f"settings of {told['session']}")
     return list(zip(["handles", *[""] * len(lines)], lines, strict=False))
 

@@ -29,15 +29,26 @@ fn inherit_body<L: Lanes>(parent: &Part, sorted: &Sorted, child: &mut Part) {
         }
     }
     for (group, output) in child.output.iter_mut().enumerate() {
-        let mut sum = loads::<L>(output);
+        let mut sum = [L::splat(0.0); 4];
         for (t, column) in sorted.on.plane(4).iter().enumerate() {
             let weights = L::load(&parent.through[column.to_bits() as usize * groups + group].0);
             for k in 0..4 {
                 sum[k] = weights.mul_add(L::splat(sorted.on.plane(k)[t]), sum[k]);
             }
         }
-        *output = stores(sum);
+        add_to::<L>(output, sum);
     }
+}
+
+/// Adds what was summed apart. Summed onto the output one by one, hundreds of rows would each round to its size: the logits of a place
+/// would differ by 1e-5 between one box and another, in which other rows are on.
+#[inline(always)]
+fn add_to<L: Lanes>(output: &mut [Aligned; 4], sum: [L; 4]) {
+    let mut whole = loads::<L>(output);
+    for k in 0..4 {
+        whole[k] = whole[k].add(sum[k]);
+    }
+    *output = stores(whole);
 }
 
 multiversion! {
@@ -65,7 +76,7 @@ fn fold_body<L: Lanes>(
     let groups = heads.groups;
     for (group, output) in output.iter_mut().enumerate() {
         let weights = |id: u32| L::load(&heads.weights[id as usize * groups + group].0);
-        let mut sum = loads::<L>(output);
+        let mut sum = [L::splat(0.0); 4];
         for row in &bounded.on {
             let weights = weights(row.id);
             let affine = &bounded.affine[row.panel as usize];
@@ -73,7 +84,7 @@ fn fold_body<L: Lanes>(
                 sum[k] = L::splat(affine[k].0[row.lane as usize % WIDTH]).mul_add(weights, sum[k]);
             }
         }
-        *output = stores(sum);
+        add_to::<L>(output, sum);
 
         for first in (0..open).step_by(COLUMNS) {
             let mut sum = [L::splat(0.0); COLUMNS];
