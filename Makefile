@@ -34,6 +34,7 @@ rust-format: tools
 
 rust-lint: tools
 	cargo clippy --workspace --exclude neuralmls-bindgen --all-targets --locked -- -D warnings
+	cargo clippy --profile tool -p neuralmls-bindgen --locked -- -D warnings
 
 # Tests that find no files to read say so; it is shown.
 rust-test: tools
@@ -97,7 +98,7 @@ wheels-build: .venv/wheels.stamp
 	$(BIN)/python tools/wheel/backend.py
 	rm -rf dist
 	PATH="$(CURDIR)/$(BIN):$$PATH" RUSTFLAGS="$(NO_PATHS)" maturin build --release --locked --zig --compatibility manylinux_2_28 --out dist
-	$(BIN)/maturin sdist --quiet --out dist
+	$(BIN)/maturin sdist --out dist
 
 # Installs the wheel where there is nothing but Python, and tries it.
 wheels-test: .venv/test.stamp .venv/wheels.stamp

@@ -1,4 +1,4 @@
-"""The pictures of turned control points in docs/beyond-the-paper.md: `python studies/turned_pictures.py FOLDER`."""
+"""The pictures of turned control points in docs/notes/beyond-the-paper.md: `python studies/turned_pictures.py FOLDER`."""
 
 from __future__ import annotations
 
@@ -54,7 +54,9 @@ def main(folder: Path) -> None:
 
 def deformed(x: np.ndarray, points: ControlPoints) -> np.ndarray:
     """Where the points go, exactly and rigidly."""
-    return nm.deform(x, points.sources, points.targets, rotations=points.rotations, scales=points.scales, handles="exact")
+    return nm.deform(
+        x, points.sources, points.targets, rotations=points.rotations, scales=points.scales, handles="exact"
+    )
 
 
 def bar() -> tuple[np.ndarray, np.ndarray]:

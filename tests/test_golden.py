@@ -38,11 +38,11 @@ def given(reference):
     return (reference[name].astype(np.float64) for name in ("points", "control_points", "targets"))
 
 
-def network(reference, width: int, when: str) -> _core.Network:
+def network(reference, p, width: int, when: str) -> _core.Weights:
     layers = [
         (np.ascontiguousarray(reference[f"w{width}_{when}_W{i}"]), reference[f"w{width}_{when}_b{i}"]) for i in range(3)
     ]
-    return _core.Network(3, [0.0] * 3, 1.0, np.zeros((0, 3), np.float32), layers)
+    return _core.Weights.of_layers(np.ascontiguousarray(p), [0.0] * 3, 1.0, np.zeros((0, 3), np.float32), layers)
 
 
 def moments(p, q, logits, temperature):
@@ -161,19 +161,19 @@ def test_low_temperatures_agree_with_the_rule_in_double_precision(reference, wid
 
 def test_training_follows_the_reference_step_by_step(reference):
     _, p, _ = given(reference)
-    trained, losses, _ = _core.train(network(reference, 128, "init"), np.ascontiguousarray(p), 48, 6e-4, None)
-    assert report("losses of 48 steps, width 128", [np.abs(np.array(losses) - reference["w128_losses"])]) < 1e-6
-    final = network(reference, 128, "final")
+    trained = network(reference, p, 128, "init").further(48, 6e-4, None)
+    assert report("losses of 48 steps, width 128", [np.abs(trained.losses - reference["w128_losses"])]) < 1e-6
+    final = network(reference, p, 128, "final")
     pairs = zip(trained.layers, final.layers, strict=True)
     differences = [np.abs(a - b) for ours, theirs in pairs for a, b in zip(ours, theirs, strict=True)]
     assert report("parameters after them", differences) < 1e-6
 
 
 def test_logits_agree_with_double_precision(reference):
-    x, _, _ = given(reference)
+    x, p, _ = given(reference)
     widths = [width for width in (128, 1024) if f"w{width}_final_W0" in reference]
     assert 128 in widths
     for width in widths:
-        logits = network(reference, width, "final").logits(x, None)
+        logits = network(reference, p, width, "final").logits(x, None)
         # What the piecewise evaluation reaches in single precision; a dense product has 1.4e-5 at the most.
         assert report(f"logits, width {width}", [np.abs(logits - reference[f"w{width}_logits64"])]) < 2.5e-5

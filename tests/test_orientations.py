@@ -112,7 +112,9 @@ def test_exact_handles_arrive_turned(weights):
 def test_the_order_of_the_control_points_does_not_matter():
     rng = np.random.default_rng(2)
     p, q = rng.uniform(-1, 1, (2, 6, 3))
-    turns = [nm.Orientation(tuple(axis), 50).matrix if i % 2 else None for i, axis in enumerate(rng.normal(size=(6, 3)))]
+    turns = [
+        nm.Orientation(tuple(axis), 50).matrix if i % 2 else None for i, axis in enumerate(rng.normal(size=(6, 3)))
+    ]
     order = rng.permutation(6)
     for transform in TRANSFORMS:
         here = nm.deform(X, p, q, rotations=turns, transform=transform)

@@ -33,7 +33,7 @@ else:
 # The same of the command line.
 COMMAND = """
 import resource, sys
-import numpy, neuralmls.shape, neuralmls.cli.inspect, neuralmls.cli.deformation
+import numpy, neuralmls.shape, neuralmls.cli.inspect, neuralmls.cli.inputs
 from neuralmls.cli import main
 pages = int(open("/proc/self/statm").read().split()[0])
 limit = pages * resource.getpagesize() + int(float(sys.argv.pop(1)) * 2**20)

@@ -23,13 +23,12 @@ if TYPE_CHECKING:
     from neuralmls.deformer import Deformer
     from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError, NotApplicable
     from neuralmls.handles import Aim, ExactHandles, Soft
-    from neuralmls.map import Map
     from neuralmls.orientations import Orientation
     from neuralmls.pipeline import deform
     from neuralmls.placement import farthest_of, farthest_points
     from neuralmls.point_tree import PointTree
     from neuralmls.report import Advice, Report
-    from neuralmls.session import Session
+    from neuralmls.session import Map, Session
     from neuralmls.shape import Shape, read
     from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
     from neuralmls.weights.softmax import softmax
@@ -77,7 +76,7 @@ _HOMES = {
     "ExactHandles": "handles",
     "FileError": "errors",
     "InverseDistanceWeights": "weights",
-    "Map": "map",
+    "Map": "session",
     "NeuralMLSError": "errors",
     "NeuralWeights": "weights",
     "NotApplicable": "errors",

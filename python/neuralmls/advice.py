@@ -11,10 +11,10 @@ from neuralmls.arrays import as_points
 from neuralmls.control_points import ControlPoints
 from neuralmls.errors import ArgumentError
 from neuralmls.handles import Transform
-from neuralmls.map import Map
 from neuralmls.orientations import Orientation, Rotations, Scales, as_orientations
 from neuralmls.report import Advice
-from neuralmls.session import Handles, Session
+from neuralmls.session import Map, Session
+from neuralmls.settings import Handles
 from neuralmls.weights import Weights
 
 

@@ -9,7 +9,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from neuralmls import _core
+from neuralmls import _core, session_files
 from neuralmls.arrays import as_points
 from neuralmls.errors import ArgumentError, ControlPointError
 from neuralmls.orientations import Orientation
@@ -77,7 +77,7 @@ class ControlPoints:
         return self
 
     @classmethod
-    def read(cls, path: str | os.PathLike[str]) -> ControlPoints:
+    def read(cls, path: str | os.PathLike[str]) -> Self:
         """Read the control points of a file of any kind that `Session.read` reads.
 
         Raises
@@ -87,9 +87,7 @@ class ControlPoints:
         ControlPointError
             The file is well-formed, but its control points cannot be used.
         """
-        from neuralmls.session import Session
-
-        return Session.read(path).points
+        return cls._of(session_files.read(path).session.points)
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write a control-point file, JSON or CSV by its ending; reading it gives the same bits.
@@ -100,9 +98,7 @@ class ControlPoints:
             The ending is another one, or that of a CSV file, which holds no orientations, and there are some; or the
             file cannot be written; a file that was there is then untouched.
         """
-        from neuralmls.session import Session
-
-        Session(self).write(path)
+        session_files.write(_core.Session(self._core), path)
 
     def __len__(self) -> int:
         return len(self._core)

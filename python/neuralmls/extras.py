@@ -14,9 +14,9 @@ def extra(name: str) -> str:
     """Return how to install the libraries of an extra.
 
     >>> extra("figures")
-    "pip install 'neuralmls[figures]' (in a checkout: pip install '.[figures]')"
+    "pip install 'neuralmls[figures]' (in a checkout: pip install --editable '.[figures]')"
     """
-    return pip(f"'neuralmls[{name}]'", f"'.[{name}]'")
+    return pip(f"'neuralmls[{name}]'", f"--editable '.[{name}]'")
 
 
 RESEARCH = pip("neuralmls-research", "./research")

@@ -18,6 +18,7 @@ Array: TypeAlias = NDArray[np.float64]
 Rotations: TypeAlias = Sequence[ArrayLike | None] | ArrayLike | None
 Scales: TypeAlias = Sequence[float | None] | ArrayLike | None
 
+
 def as_orientations(
     rotations: Rotations,
     scales: Scales,

@@ -1,4 +1,4 @@
-"""What a deformation did to its control points, and what is likely bad about it; all sentences are made in crates/session."""
+"""What a deformation did to its control points, and what is likely bad about it; crates/session makes the sentences."""
 
 from __future__ import annotations
 

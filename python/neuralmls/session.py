@@ -1,29 +1,33 @@
-"""Sessions: control points, settings, and the box in which weights are trained. Fitted, a session is a map of space."""
+"""Sessions, and what comes of them: control points and settings that, once fitted, are a map of space."""
 
 from __future__ import annotations
 
 import json
 import os
 from collections.abc import Iterable
-from typing import Any, Literal, Self, TypeAlias
+from typing import Any, Literal, Self, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from neuralmls import _core
-from neuralmls.arrays import Progress, as_box, as_points, as_triangles, box_around
+from neuralmls import _core, session_files
+from neuralmls import _core as core  # where a class has an attribute of that name
+from neuralmls.arrays import Progress, as_box, as_points, box_around
 from neuralmls.control_points import ControlPoints
-from neuralmls.errors import ArgumentError, ControlPointError, FileError
+from neuralmls.deformer import Deformer, Floats
+from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
 from neuralmls.files import as_path, read_bytes, write_atomically
 from neuralmls.handles import Transform
-from neuralmls.map import Map
+from neuralmls.placement import as_indices
+from neuralmls.report import Advice, Look, Report
+from neuralmls.settings import Handles, WeightsName, changes_of
 from neuralmls.shape import Shape
-from neuralmls.weights import ShapeAwareWeights
+from neuralmls.shapes_together import box_of, together
+from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
 
-WeightsName: TypeAlias = Literal["neural", "shape-aware", "inverse-distance"]
-Handles: TypeAlias = Literal["auto", "exact", "soft"] | float
-
-PARAMETERS = ("width", "steps", "seed", "rate", "fourier_sigma", "alpha", "epsilon")
+KINDS: dict[str, type[Weights]] = {
+    kind._kind: kind for kind in (NeuralWeights, ShapeAwareWeights, InverseDistanceWeights)
+}
 
 
 class Session:
@@ -76,7 +80,7 @@ class Session:
             if value is None:
                 raise ArgumentError(f"{name}: expected a setting, found None")
         del said["weights"]
-        changes = _settings(weights, parameters, **said)
+        changes = changes_of(weights, parameters, **said)
         self._core = _core.Session(points._core).with_settings(changes)
         self._notes: tuple[str, ...] = ()
         if frame is not None:
@@ -96,7 +100,7 @@ class Session:
         *,
         by_order: bool = False,
     ) -> Self:
-        """Read control points of any kind: a session, a list of landmarks, files of other tools (docs/control-points.md).
+        """Read control points of any kind: a session, a list of landmarks, files of other tools.
 
         Parameters
         ----------
@@ -113,14 +117,14 @@ class Session:
         ControlPointError
             The file is well-formed, but its control points cannot be used.
         """
-        read = _read(path)
+        found = session_files.read(path)
         if targets is not None:
-            other = _read(targets)
+            others = session_files.read(targets)
             try:
-                read = read.joined(other, by_order)
+                found = found.joined(others, by_order)
             except (FileError, ControlPointError, ArgumentError) as error:
                 raise type(error)(f"{path} and {targets}: {error}") from None
-        return cls._of(read.session, read.notes)
+        return cls._of(found.session, found.notes)
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write a session file (JSON), or the control points alone (CSV), by the ending; keys of others are kept.
@@ -131,14 +135,7 @@ class Session:
             The ending is another one, or that of a CSV file, which holds no orientations, and there are some; or the
             file cannot be written; a file that was there is then untouched.
         """
-        ending = as_path("path", path).suffix.lower()
-        if ending not in (".json", ".csv"):
-            raise FileError(f"{path}: expected a control-point file that ends in .json or .csv")
-        try:
-            text = self._core.to_json() if ending == ".json" else self._core.to_csv()
-        except FileError as error:
-            raise FileError(f"{path}: {error}") from None
-        write_atomically(path, text.encode())
+        session_files.write(self._core, path)
 
     @property
     def points(self) -> ControlPoints:
@@ -152,7 +149,7 @@ class Session:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """The settings, as the session file has them: weights with their parameters, transform, temperature, handles."""
+        """Weights with their parameters, transform, temperature, handles, as the session file has them."""
         found: dict[str, Any] = json.loads(self._core.settings)
         return found
 
@@ -192,7 +189,7 @@ class Session:
         """
         core = self._core if points is None else self._core.with_points(points._core)
         said = {"transform": transform, "temperature": temperature, "handles": handles}
-        changes = _settings(weights, parameters, **{key: value for key, value in said.items() if value is not None})
+        changes = changes_of(weights, parameters, **{key: value for key, value in said.items() if value is not None})
         if changes != "{}":
             core = core.with_settings(changes)
         if frame is not None:
@@ -218,79 +215,269 @@ class Session:
             Shape-aware weights need SciPy, and it is not installed.
         """
         dimension = self.points.dimension
-        boxes = [shape.bounds if isinstance(shape, Shape) else _box(shape, dimension) for shape in shapes]
+        boxes = [box_of(shape, dimension) for shape in shapes]
         bounds = as_box(box_around(np.concatenate(boxes)), dimension) if boxes else None
         if self.weights != "shape-aware":
             return Map._of(self._core.fit(bounds, progress))
         if bounds is None:
             raise ArgumentError("shapes: shape-aware weights need at least one shape to learn from")
         frame = self.frame if self.frame is not None else bounds
-        x, faces = _together(shapes, dimension)
+        x, faces = together(shapes, dimension)
         seed = self.settings["weights"]["seed"]
-        weights = ShapeAwareWeights.fit(
-            self.points.sources, x, faces, bounds=frame, seed=seed, progress=progress
-        )
+        weights = ShapeAwareWeights.fit(self.points.sources, x, faces, bounds=frame, seed=seed, progress=progress)
         return Map._of(_core.Map.of(self._core.with_frame(np.ascontiguousarray(frame)), weights._core))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (self._core.to_json(), self._notes)
+        return _restored_session, (self._core.to_json(), self._notes)
 
 
-def _restored(text: str, notes: tuple[str, ...]) -> Session:
+class Map:
+    """A fitted session: where each point of space goes. Made by `Session.fit` or `Map.load`.
+
+    The same map gives the same result for every file, block, process and machine, to rounding: bodies and their
+    clothes, meshes and their landmarks stay together.
+
+    Examples
+    --------
+    >>> points = ControlPoints([[0.0, 0], [1, 0]])
+    >>> map = Session(points, weights="inverse-distance").fit()
+    >>> map.moved(points.moved({"p2": [0, 0.5]})).at([[1.0, 0.0]]).round(6).tolist()
+    [[1.0, 0.5]]
+    """
+
+    _core: core.Map
+
+    @classmethod
+    def _of(cls, made: core.Map) -> Self:
+        self = cls.__new__(cls)
+        self._core = made
+        return self
+
+    @classmethod
+    def of(cls, session: Session, weights: Weights) -> Self:
+        """Return the map of weights that were fitted already.
+
+        Raises
+        ------
+        ArgumentError
+            They belong to other control points.
+        """
+        return cls._of(_core.Map.of(session._core, weights._core))
+
+    @property
+    def session(self) -> Session:
+        """The control points, the settings, and the frame in which the weights were trained."""
+        return Session._of(self._core.session)
+
+    @property
+    def weights(self) -> Weights:
+        """The weights."""
+        core = self._core.weights
+        return KINDS[core.kind]._of(core)
+
+    def with_session(self, session: Session) -> Map:
+        """Return the map of another session with the same weights: other targets, transform, temperature, handles.
+
+        Raises
+        ------
+        ArgumentError
+            The control points at rest or the settings of the weights are others, which needs a fit.
+        """
+        return Map._of(self._core.with_session(session._core))
+
+    def moved(self, points: ControlPoints) -> Map:
+        """Return the map with other targets and orientations of the same control points.
+
+        Raises
+        ------
+        ArgumentError
+            The control points at rest are others.
+        """
+        return Map._of(self._core.with_session(self._core.session.with_points(points._core)))
+
+    def at(self, points: ArrayLike, *, progress: Progress | None = None) -> Floats:
+        """Return where points (n, d) go, float32 if they are, else float64.
+
+        Raises
+        ------
+        ArgumentError
+            They are no finite points of the map's dimension.
+        """
+        return self.deform(points, progress=progress)
+
+    @overload
+    def deform(
+        self,
+        shape: Shape | ArrayLike,
+        *,
+        return_maps: Literal[False] = ...,
+        progress: Progress | None = ...,
+    ) -> Floats: ...
+
+    @overload
+    def deform(
+        self, shape: Shape | ArrayLike, *, return_maps: Literal[True], progress: Progress | None = ...
+    ) -> tuple[Floats, NDArray[np.float64]]: ...
+
+    def deform(
+        self, shape: Shape | ArrayLike, *, return_maps: bool = False, progress: Progress | None = None
+    ) -> Floats | tuple[Floats, NDArray[np.float64]]:
+        """Return where the points of a shape go: what `neuralmls deform` writes.
+
+        Parameters
+        ----------
+        shape : Shape, or points (n, d)
+        return_maps : bool
+            Also return the local maps `M`, (n, d, d) float64, by which normals turn (`Shape.write`).
+        progress : callable, optional
+            Told the fraction done, from 0 to 1; what it raises stops the call.
+
+        Returns
+        -------
+        (n, d), float32 if the points were, else float64
+
+        Raises
+        ------
+        ArgumentError
+            The points are no finite points of the map's dimension.
+        """
+        y, maps = self.frame(self.bind(shape, progress=progress), return_maps=return_maps, progress=progress)
+        return y if maps is None else (y, maps)
+
+    def bind(self, shape: Shape | ArrayLike, *, progress: Progress | None = None) -> Deformer:
+        """Evaluate the weights at points once, for many frames: `map.moved(points).frame(bound)`.
+
+        Raises
+        ------
+        ArgumentError
+            They are no finite points of the map's dimension.
+        """
+        x = shape.positions if isinstance(shape, Shape) else shape
+        transform = json.loads(self._core.session.settings)["transform"]
+        return Deformer(x, self.weights, transform=transform, progress=progress)
+
+    def frame(
+        self,
+        bound: Deformer,
+        *,
+        return_maps: bool = False,
+        out: NDArray[np.float64] | None = None,
+        progress: Progress | None = None,
+    ) -> tuple[Floats, NDArray[np.float64] | None]:
+        """Return where bound points go, and the local maps (n, d, d) if they are asked for, else None.
+
+        Parameters
+        ----------
+        bound : what `bind` returned for this map, or for one of the same weights and transform
+        out : (n, d) C-contiguous float64, optional
+            Where to write the result, which is then returned.
+        progress : callable, optional
+            Told the fraction done, from 0 to 1; what it raises stops the call.
+        """
+        positions, maps = self._core.deform(bound._core, return_maps, out, progress)
+        y: Floats = positions if out is not None else positions.astype(bound._dtype, copy=False)
+        return y, maps
+
+    def report(self, shape: Shape | None = None) -> Report:
+        """Return what happens to the control points; with a shape, in a file of its kind, which may round."""
+        core = self._core.report(None if shape is None else shape._file)
+        return Report(
+            tuple(core.names),
+            core.moved,
+            core.distance_to_target,
+            tuple(core.orientations),
+            core.handles,
+            core.soft,
+            tuple(core.warnings),
+        )
+
+    def advise(self, shape: Shape | ArrayLike, faces: ArrayLike | None = None) -> list[Advice]:
+        """Return what is likely bad about a deformed shape, and what would help; nothing where all moves as one.
+
+        - misses: control points that stop short of their targets;
+        - folds: places where space is turned inside out, `det J <= 0`, with `J` the Jacobian of the map;
+        - torn: places where `J` stretches far more than in most places, as between control points that move apart;
+        - ungoverned: a part that moves, and is far from all control points.
+
+        What would help was tried: another temperature, soft handles and, where neither does, shape-aware weights (if
+        SciPy is there) are named only where they at least halve it; exact handles only where they arrive.
+
+        Parameters
+        ----------
+        shape : Shape, or points (n, d)
+        faces : (f, 3) integers, optional
+            Triangles of the points; with them places are looked at by area, otherwise the points themselves.
+
+        Raises
+        ------
+        ArgumentError
+            There are no points, or a face names none.
+        """
+        x = shape.positions if isinstance(shape, Shape) else as_points("x", shape, self.session.points.dimension)
+        triangles = shape.faces if isinstance(shape, Shape) else faces
+        other = None if isinstance(self.weights, ShapeAwareWeights) else lambda: self._shape_aware(x, triangles)
+        names = self._core.session.points.names
+        return [
+            Advice(kind, sentence, tuple(where), tuple(names[i] for i in near), amount)  # type: ignore[arg-type]
+            for kind, sentence, where, near, amount in self._core.advise(x, as_indices(triangles, len(x)), other)
+        ]
+
+    def look(self, shape: Shape | ArrayLike, faces: ArrayLike | None = None) -> Look:
+        """Return what the map does at 4,000 places of a shape: what `advise` judges by.
+
+        Raises
+        ------
+        ArgumentError
+            There are no points, or a face names none.
+        """
+        x = shape.positions if isinstance(shape, Shape) else as_points("x", shape, self.session.points.dimension)
+        triangles = shape.faces if isinstance(shape, Shape) else faces
+        return Look(*self._core.look(x, as_indices(triangles, len(x))))
+
+    def _shape_aware(self, x: NDArray[np.float64], faces: ArrayLike | None) -> core.Map | None:
+        """The same with weights that know the shape; None where they cannot be fitted."""
+        if x.shape[1] == 1:
+            return None
+        try:
+            weights = ShapeAwareWeights.fit(self._core.session.points.sources, x, faces)
+        except NeuralMLSError:  # no SciPy, or no size to measure by
+            return None
+        session = self._core.session.with_settings('{"weights": {"kind": "shape-aware"}}')
+        return _core.Map.of(session, weights._core)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the map: weights bit for bit, and the session, as a safetensors file.
+
+        Raises
+        ------
+        FileError
+            The file cannot be written; what was there is untouched.
+        """
+        write_atomically(path, self._core.to_bytes())
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Read what `save` or `neuralmls fit` wrote. Nothing in the file is executed.
+
+        Raises
+        ------
+        FileError
+            The file is missing, or is no map.
+        """
+        try:
+            return cls._of(_core.Map.from_bytes(read_bytes(as_path("path", path))))
+        except OSError as error:
+            raise FileError(f"{path}: cannot read: {error.strerror or error}") from error
+        except FileError as error:
+            raise FileError(f"{path}: {error}") from None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored_map, (self._core.to_bytes(),)
+
+
+def _restored_session(text: str, notes: tuple[str, ...]) -> Session:
     return Session._of(_core.Read(text.encode(), "session.json").session, notes)
 
 
-def _read(path: str | os.PathLike[str]) -> _core.Read:
-    source = as_path("path", path)
-    try:
-        data = read_bytes(source)
-    except FileNotFoundError as error:
-        raise FileError(f"{path}: there is no such file") from error
-    except OSError as error:
-        raise FileError(f"{path}: cannot read: {error.strerror or error}") from error
-    try:
-        return _core.Read(data, source.name)
-    except (FileError, ControlPointError) as error:
-        raise type(error)(f"{path}: {error}") from None
-
-
-def _settings(weights: str | None, parameters: dict[str, float | None], **others: Any) -> str:
-    """The settings as the session file has them; the core refuses what is wrong with them."""
-    unknown = parameters.keys() - set(PARAMETERS)
-    if unknown:
-        raise TypeError(f"unexpected keyword argument '{min(unknown)}'")
-    chosen = {"kind": weights} if weights is not None else {}
-    changes = {key: _plain(value) for key, value in others.items()}
-    chosen |= {key: _plain(value) for key, value in parameters.items() if value is not None}
-    if chosen:
-        changes["weights"] = chosen
-    try:
-        return json.dumps(changes, allow_nan=False)
-    except (TypeError, ValueError) as error:
-        raise ArgumentError(f"settings: expected finite numbers and names, found {changes!r}: {error}") from None
-
-
-def _plain(value: Any) -> Any:
-    """A number of NumPy's as Python's own."""
-    return value.item() if isinstance(value, np.generic) else value
-
-
-def _box(points: ArrayLike, dimension: int) -> NDArray[np.float64]:
-    x = as_points("shapes", points, dimension)
-    if not len(x):
-        raise ArgumentError("shapes: expected at least one point, found none")
-    return box_around(x)
-
-
-def _together(
-    shapes: Iterable[Shape | ArrayLike], dimension: int
-) -> tuple[NDArray[np.float64], NDArray[np.int64] | None]:
-    """The points and triangles of several shapes as those of one."""
-    points, triangles, count = [], [], 0
-    for shape in shapes:
-        x = shape.positions if isinstance(shape, Shape) else as_points("shapes", shape, dimension)
-        if isinstance(shape, Shape) and shape.faces is not None:
-            triangles.append(as_triangles(shape.faces, len(x)) + count)
-        points.append(x)
-        count += len(x)
-    return np.concatenate(points), np.concatenate(triangles) if triangles else None
+def _restored_map(data: bytes) -> Map:
+    return Map._of(_core.Map.from_bytes(data))

@@ -37,7 +37,20 @@ def test_only_positions_change(run, here):
 
 @pytest.mark.parametrize("transform", ["rigid", "similarity", "affine"])
 @pytest.mark.parametrize("kind", ["neural", "inverse-distance"])
-@pytest.mark.parametrize("handles", [(), ("--handles", "exact",), ("--handles", "soft",)])
+@pytest.mark.parametrize(
+    "handles",
+    [
+        (),
+        (
+            "--handles",
+            "exact",
+        ),
+        (
+            "--handles",
+            "soft",
+        ),
+    ],
+)
 def test_positions_are_those_of_the_package(run, here, kind, transform, handles):
     options = ("--weights", kind, *(QUICK if kind == "neural" else ("--alpha", "0.75", "--epsilon", "0.01")))
     moves = ("--move", "top=0.25,1,0", "--move", "side=0,0,-0.5")
@@ -50,7 +63,17 @@ def test_positions_are_those_of_the_package(run, here, kind, transform, handles)
     else:
         weights = nm.InverseDistanceWeights(points.sources, bounds=shape.bounds, alpha=0.75, epsilon=0.01)
     exact = nm.ExactHandles(weights, transform=transform)
-    aim = (exact.aim if handles else exact.aim_carefully)(points.targets, 0.8, float(handles != ("--handles", "soft",)))
+    aim = (exact.aim if handles else exact.aim_carefully)(
+        points.targets,
+        0.8,
+        float(
+            handles
+            != (
+                "--handles",
+                "soft",
+            )
+        ),
+    )
     expected = nm.Deformer(shape.positions, weights, transform=transform).deform(aim.targets, 0.8)
     np.testing.assert_allclose(nm.read("out.obj").positions, expected, rtol=0, atol=1e-6)
 
@@ -68,7 +91,9 @@ def test_moves_add_to_the_targets_of_the_file(run, here):
 def test_turns_are_those_of_the_package(run, here, axis, vector):
     turn = ("--turn", f"top={axis},70")
     ran = run(*DEFORM, "-o", "out.obj", *CLASSIC, *turn, "--move", "top=0.25,1,0", "--json")
-    points = nm.ControlPoints.read("points.csv").moved({"top": [0.25, 1, 0]}).oriented({"top": nm.Orientation(vector, 70)})
+    points = (
+        nm.ControlPoints.read("points.csv").moved({"top": [0.25, 1, 0]}).oriented({"top": nm.Orientation(vector, 70)})
+    )
     shape = nm.read("shape.obj")
     deformer = nm.Deformer(shape.positions, nm.InverseDistanceWeights(points.sources, bounds=shape.bounds))
     expected = deformer.deform(points.targets, rotations=points.rotations)
@@ -150,7 +175,9 @@ def test_distances_to_targets_are_where_the_control_points_arrive(run):
     """Classic weights meet every target; a network after few steps does not, and is said not to."""
     exact = json.loads(run(*DEFORM, "-o", "a.obj", *CLASSIC, "--move", "top=0,1,0", "--json").out)
     assert max(point["distance_to_target"] for point in exact["control_points"]) < 1e-6
-    short = json.loads(run(*DEFORM, "-o", "b.obj", "--steps", "1", "--handles", "soft", "--move", "top=0,1,0", "--json").out)
+    short = json.loads(
+        run(*DEFORM, "-o", "b.obj", "--steps", "1", "--handles", "soft", "--move", "top=0,1,0", "--json").out
+    )
     points = nm.ControlPoints.read("points.csv").moved({"top": [0, 1, 0]})
     weights = nm.NeuralWeights.fit(points.sources, bounds=nm.read("shape.obj").bounds, steps=1)
     arrived = nm.Deformer(points.sources, weights).deform(points.targets)

@@ -1,15 +1,17 @@
 //! The pipeline: logits -> softmax(T) -> MLS, for points that are bound once and deformed many times.
 
-use crate::error::{check_points, Error};
+use crate::check::check_points;
+use crate::error::Error;
 use crate::geometry::{Frame, PointTree};
-use crate::machine::parallel::{any, for_each_at_once};
+use crate::machine::memory::zeros;
+use crate::machine::parallel::{any, briefly, for_each_at_once};
 use crate::machine::progress::{report, Progress};
 use crate::machine::simd::prefetch;
 use crate::mls::batch::{BatchMls, BatchPoints, Scratch, BATCH};
 use crate::mls::{check_orientations, oriented, Global, Mls, Transform};
 use crate::softmax::{check_temperature, relative_weights, PackedWeights};
 use crate::weights::Weights;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// Points between two reports of progress.
 const CHUNK: usize = 1 << 18;
@@ -158,7 +160,7 @@ impl Deformer {
     /// The first frame at a temperature computes the weights; the next ones find them.
     ///
     /// # Errors
-    /// [`Error::Cancelled`]; where the pose does not fit, is not finite, an orientation is none, or the temperature is not above 0.
+    /// [`Error::Cancelled`], [`Error::Memory`]; where the pose does not fit, is not finite, an orientation is none, or the temperature is not above 0.
     pub fn deform<'a>(
         &self,
         pose: impl Into<Pose<'a>>,
@@ -166,8 +168,8 @@ impl Deformer {
         maps: bool,
         progress: &mut Progress<'_>,
     ) -> Result<Deformed, Error> {
-        let mut positions = vec![0.0; self.x.len()];
-        let mut matrices = maps.then(|| vec![0.0; self.x.len() * self.dim]);
+        let mut positions = zeros(self.x.len())?;
+        let mut matrices = if maps { Some(zeros(self.x.len() * self.dim)?) } else { None };
         self.deform_into(pose, temperature, &mut positions, matrices.as_deref_mut(), progress)?;
         Ok(Deformed { positions, maps: matrices })
     }
@@ -267,7 +269,10 @@ impl Deformer {
     ) -> Result<(), Error> {
         let (p, q) = (self.entered::<D>(&self.p), self.entered::<D>(pose.q));
         let mls = self.mls(&p, &q, pose.orientations);
-        let batch = mls.batch(self.frame).map(|batch| (batch, self.weights(temperature)));
+        let batch = match mls.batch(self.frame) {
+            Some(batch) => Some((batch, self.weights(temperature)?)),
+            None => None,
+        };
         let motion = Motion { x: &self.x, logits: &self.logits, frame: self.frame, temperature, mls, batch };
         let mut maps = maps.unwrap_or_default();
         for (chunk, y) in y.chunks_mut(CHUNK * D).enumerate() {
@@ -291,30 +296,32 @@ impl Deformer {
     /// nothing is kept between frames.)
     ///
     /// # Errors
-    /// Where the temperature is not above 0.
+    /// Where the temperature is not above 0; [`Error::Memory`].
     pub fn prepare(&self, temperature: f64) -> Result<(), Error> {
         check_temperature(temperature)?;
         if self.dim == 3 {
-            self.weights(temperature);
+            self.weights(temperature)?;
         }
         Ok(())
     }
 
     /// The packed weights at `temperature`: those of the last frame, or new ones in their place.
-    fn weights(&self, temperature: f64) -> Arc<PackedWeights> {
+    fn weights(&self, temperature: f64) -> Result<Arc<PackedWeights>, Error> {
         // Not locked while they are computed: this thread may meanwhile take up another frame of the same deformer.
-        let last = {
-            let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
-            match &*last {
-                Some(weights) if weights.temperature() == temperature => return weights.clone(),
+        let last = match briefly(&self.last) {
+            Some(mut last) => match &*last {
+                Some(weights) if weights.temperature() == temperature => return Ok(weights.clone()),
                 _ => last.take(),
-            }
+            },
+            None => None,
         };
         let memory = last.and_then(|last| Arc::try_unwrap(last).ok());
         let m = self.p.len() / self.dim;
-        let weights = Arc::new(PackedWeights::new(&self.logits, m, temperature, memory));
-        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(weights.clone());
-        weights
+        let weights = Arc::new(PackedWeights::new(&self.logits, m, temperature, memory)?);
+        if let Some(mut last) = briefly(&self.last) {
+            *last = Some(weights.clone());
+        }
+        Ok(weights)
     }
 }
 

@@ -20,6 +20,7 @@
 
 mod advice;
 mod aim;
+mod check;
 mod deformer;
 mod error;
 mod geometry;

@@ -3,8 +3,9 @@
 //! By its true Jacobian `J` there (central differences; the local map `M` leaves out how the weights change).
 
 use crate::aim::{greatest, Handles};
+use crate::check::check_points;
 use crate::deformer::{Deformer, Pose};
-use crate::error::{check_points, Error};
+use crate::error::Error;
 use crate::geometry::placement::sample_surface;
 use crate::mls::Transform;
 use crate::softmax;

@@ -60,7 +60,7 @@ impl Deformer {
     ) -> PyResult<Deformer> {
         let (dim, transform) = (x.shape()[1], self::transform(transform)?);
         let (x, p, logits) = (x.as_slice()?, p.as_slice()?, logits.as_slice()?);
-        let bound = || neuralmls_core::Deformer::of_logits(copy_of(x), dim, p, copy_of(logits), transform);
+        let bound = || neuralmls_core::Deformer::of_logits(copy_of(x)?, dim, p, copy_of(logits)?, transform);
         Ok(Deformer { inner: bound().map_err(|error| from_core(error, None))?, dim })
     }
 
@@ -113,7 +113,7 @@ impl Deformer {
     ) -> PyResult<Deformer> {
         let tree = tree.map(|tree| &tree.0);
         let bind = |report: &mut dyn FnMut(f64) -> bool| {
-            neuralmls_core::Deformer::new(copy_of(x), weights, tree, transform, report)
+            neuralmls_core::Deformer::new(copy_of(x)?, weights, tree, transform, report)
         };
         Ok(Deformer { inner: run(py, progress, bind)?, dim })
     }
@@ -129,8 +129,14 @@ impl Deformer {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Deformed<'py>> {
         let (n, d) = (self.inner.len(), self.dim);
-        let positions = out.unwrap_or_else(|| PyArray2::zeros(py, [n, d], false));
-        let maps = maps.then(|| PyArray3::zeros(py, [n, d, d], false));
+        // By NumPy's own function, which raises MemoryError where there is too little.
+        let zeros = || py.import("numpy")?.getattr("zeros");
+        let positions = match out {
+            Some(out) => out,
+            None => zeros()?.call1(((n, d),))?.cast_into::<PyArray2<f64>>()?,
+        };
+        let maps = maps.then(|| zeros()?.call1(((n, d, d),))?.cast_into::<PyArray3<f64>>().map_err(PyErr::from));
+        let maps = maps.transpose()?;
         {
             let taken = |_| argument("out: another call reads or writes this array at the same time");
             let mut y = positions.try_readwrite().map_err(taken)?;

@@ -3,12 +3,13 @@
 //! The package's own modules are the only callers.
 
 mod arrays;
+mod control_points;
 mod deformer;
 mod errors;
 mod handles;
-mod map;
 mod placement;
 mod progress;
+mod report;
 mod session;
 mod shape_file;
 mod weights;
@@ -18,15 +19,17 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     #[pymodule_export]
+    use crate::control_points::{ControlPoints, Orientation};
+    #[pymodule_export]
     use crate::deformer::Deformer;
     #[pymodule_export]
     use crate::handles::Handles;
     #[pymodule_export]
-    use crate::map::{Map, Report};
-    #[pymodule_export]
     use crate::placement::{farthest_of, farthest_points, sample_surface};
     #[pymodule_export]
-    use crate::session::{ControlPoints, Orientation, Read, Session};
+    use crate::report::Report;
+    #[pymodule_export]
+    use crate::session::{Map, Read, Session};
     #[pymodule_export]
     use crate::shape_file::ShapeFile;
     #[pymodule_export]

@@ -1,202 +1,18 @@
-//! Control points and sessions: the objects of `crates/session`, as Python has them.
+//! Sessions, and what comes of them: the objects of `crates/session`, as Python has them.
 
-use neuralmls_session::{ControlPoint, Error};
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use neuralmls_core::Pose;
+use neuralmls_session::{Advice, Error, Held};
+use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 use crate::arrays::table;
-use crate::errors::from_session;
-use crate::map::Map;
+use crate::control_points::{raised, ControlPoints};
+use crate::deformer::Deformer;
 use crate::progress::run_session;
-
-fn raised(error: Error) -> PyErr {
-    from_session(error, None)
-}
-
-/// How a control point is oriented: turned about an axis, by an angle, and scaled.
-///
-/// Parameters
-/// ----------
-/// axis : 3 floats, not all 0, of any length
-///     Seen from its tip, positive angles turn counterclockwise. In the plane (0, 0, 1).
-/// degrees : float
-///     The angle; on a line 0.
-/// scale : float > 0
-///     How much larger the surroundings become. Rigid deformations leave it away.
-///
-/// Raises
-/// ------
-/// ArgumentError
-///     A number is out of its range.
-///
-/// Examples
-/// --------
-/// >>> Orientation((0, 0, 1), 90).matrix.round(6).tolist()
-/// [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
-#[pyclass(frozen, eq, from_py_object, module = "neuralmls._core")]
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) struct Orientation(pub neuralmls_session::Orientation);
-
-#[pymethods]
-impl Orientation {
-    #[new]
-    #[pyo3(signature = (axis=[0.0, 0.0, 1.0], degrees=0.0, scale=1.0))]
-    fn new(axis: [f64; 3], degrees: f64, scale: f64) -> PyResult<Orientation> {
-        neuralmls_session::Orientation::new(axis, degrees, scale).map(Orientation).map_err(raised)
-    }
-
-    /// The orientation of a rotation matrix (d, d).
-    #[staticmethod]
-    #[pyo3(signature = (matrix, scale=1.0))]
-    fn of(matrix: PyReadonlyArray2<'_, f64>, scale: f64) -> PyResult<Orientation> {
-        let matrix = (matrix.shape()[0], matrix.as_array().iter().copied().collect::<Vec<f64>>());
-        neuralmls_session::Orientation::of_matrix(&matrix.1, matrix.0, scale)
-            .map(Orientation)
-            .map_err(raised)
-    }
-
-    #[getter]
-    fn axis(&self) -> (f64, f64, f64) {
-        self.0.axis.into()
-    }
-
-    #[getter]
-    fn degrees(&self) -> f64 {
-        self.0.degrees
-    }
-
-    #[getter]
-    fn scale(&self) -> f64 {
-        self.0.scale
-    }
-
-    /// The rotation without its scale, (3, 3).
-    #[getter]
-    fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        table(py, self.0.matrix().to_vec(), 3)
-    }
-
-    /// The rotation without its scale in `dimension` coordinates, (d, d).
-    fn rotation<'py>(&self, py: Python<'py>, dimension: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        table(py, self.0.rotation(dimension), dimension)
-    }
-
-    /// Oriented so, and then further.
-    fn then(&self, further: &Orientation) -> Orientation {
-        Orientation(self.0.then(&further.0))
-    }
-
-    fn __repr__(&self) -> String {
-        let neuralmls_session::Orientation { axis: [x, y, z], degrees, scale } = self.0;
-        format!("Orientation(({x:?}, {y:?}, {z:?}), {degrees:?}, {scale:?})")
-    }
-
-    fn __reduce__(&self, py: Python<'_>) -> (Py<PyAny>, ([f64; 3], f64, f64)) {
-        let neuralmls_session::Orientation { axis, degrees, scale } = self.0;
-        (py.get_type::<Orientation>().into_any().unbind(), (axis, degrees, scale))
-    }
-}
-
-/// The checked list of control points.
-#[pyclass(frozen)]
-#[derive(Clone)]
-pub(crate) struct ControlPoints(pub neuralmls_session::ControlPoints);
-
-#[pymethods]
-impl ControlPoints {
-    #[new]
-    fn new(
-        names: Vec<String>,
-        sources: PyReadonlyArray2<'_, f64>,
-        targets: PyReadonlyArray2<'_, f64>,
-        orientations: Vec<Option<Orientation>>,
-        weights: Vec<f64>,
-    ) -> PyResult<ControlPoints> {
-        let (p, q) = (sources.as_array(), targets.as_array());
-        let points = names.into_iter().enumerate().map(|(i, name)| ControlPoint {
-            target: q.row(i).to_vec(),
-            orientation: orientations[i].map(|orientation| orientation.0),
-            weight: weights[i],
-            ..ControlPoint::new(name, p.row(i).to_vec())
-        });
-        neuralmls_session::ControlPoints::new(sources.shape()[1], points.collect())
-            .map(ControlPoints)
-            .map_err(raised)
-    }
-
-    #[getter]
-    fn names(&self) -> Vec<&str> {
-        self.0.iter().map(|point| &*point.name).collect()
-    }
-
-    #[getter]
-    fn sources<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        table(py, self.0.sources(), self.0.dim())
-    }
-
-    #[getter]
-    fn targets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        table(py, self.0.targets(), self.0.dim())
-    }
-
-    #[getter]
-    fn orientations(&self) -> Vec<Option<Orientation>> {
-        self.0.iter().map(|point| point.orientation.map(Orientation)).collect()
-    }
-
-    /// The rotations without their scales, m x d x d; None where there is none.
-    #[getter]
-    fn rotations<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray3<f64>>>> {
-        let (m, d) = (self.0.len(), self.0.dim());
-        let Some(mut scaled) = self.0.orientations() else {
-            return Ok(None);
-        };
-        for (matrix, point) in scaled.chunks_exact_mut(d * d).zip(self.0.iter()) {
-            let orientation = point.orientation.map(|orientation| orientation.rotation(d));
-            matrix.copy_from_slice(&orientation.unwrap_or_else(|| vec![f64::NAN; d * d]));
-        }
-        PyArray1::from_vec(py, scaled).reshape([m, d, d]).map(Some)
-    }
-
-    #[getter]
-    fn scales<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.0.orientations()?;
-        let scale = |point: &ControlPoint| point.orientation.map_or(f64::NAN, |orientation| orientation.scale);
-        Some(PyArray1::from_vec(py, self.0.iter().map(scale).collect()))
-    }
-
-    #[getter]
-    fn weights<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_vec(py, self.0.weights())
-    }
-
-    fn index(&self, name: &str) -> PyResult<usize> {
-        self.0.index(name).map_err(raised)
-    }
-
-    fn moved(&self, name: &str, offset: Vec<f64>) -> PyResult<ControlPoints> {
-        self.0.moved(name, &offset).map(ControlPoints).map_err(raised)
-    }
-
-    fn oriented(&self, name: &str, orientation: &Orientation) -> PyResult<ControlPoints> {
-        self.0.oriented(name, orientation.0).map(ControlPoints).map_err(raised)
-    }
-
-    fn with_targets(&self, targets: PyReadonlyArray2<'_, f64>) -> PyResult<ControlPoints> {
-        self.0.with_targets(targets.as_slice()?).map(ControlPoints).map_err(raised)
-    }
-
-    /// Warnings about control points beside a shape with the box `bounds` (2, d).
-    fn check(&self, bounds: PyReadonlyArray2<'_, f64>) -> PyResult<Vec<String>> {
-        let corners = bounds.as_slice()?;
-        let (low, high) = corners.split_at(bounds.shape()[1]);
-        self.0.check((low, high)).map_err(raised)
-    }
-
-    fn __len__(&self) -> usize {
-        self.0.len()
-    }
-}
+use crate::report::Report;
+use crate::shape_file::ShapeFile;
+use crate::weights::Weights;
 
 /// What reading a file gave.
 #[pyclass(frozen)]
@@ -307,3 +123,140 @@ fn bounds(
     let (low, high) = (corners.as_array().row(0).to_vec(), corners.as_array().row(1).to_vec());
     neuralmls_session::Bounds::new(low, high, dim).map(Some).map_err(raised)
 }
+
+/// A map of space.
+#[pyclass(frozen)]
+#[derive(Clone)]
+pub(crate) struct Map(pub neuralmls_session::Map);
+
+/// Positions n x d, and the maps n x d x d where they were asked for.
+type Deformed<'py> = (Bound<'py, PyArray2<f64>>, Option<Bound<'py, PyArray3<f64>>>);
+/// A kind, a sentence, a place, control points by their numbers, how bad.
+type Told = (&'static str, String, Vec<f64>, Vec<usize>, f64);
+
+#[pymethods]
+impl Map {
+    /// Of weights that were fitted already.
+    #[staticmethod]
+    fn of(session: &Session, weights: &Weights) -> PyResult<Map> {
+        neuralmls_session::Map::over(session.0.clone(), weights.0.clone()).map(Map).map_err(raised)
+    }
+
+    #[getter]
+    fn session(&self) -> Session {
+        Session(self.0.session().clone())
+    }
+
+    #[getter]
+    fn weights(&self) -> Weights {
+        Weights(self.0.shared_weights())
+    }
+
+    /// The same weights with other targets, transform, temperature, handles.
+    fn with_session(&self, session: &Session) -> PyResult<Map> {
+        self.0.with(session.0.clone()).map(Map).map_err(raised)
+    }
+
+    /// The effective targets, and how far each control point stays from where it was to go.
+    fn aim<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>)> {
+        let aim = py.detach(|| self.0.aim()).map_err(raised)?;
+        Ok((table(py, aim.targets, self.0.session().points.dim())?, PyArray1::from_vec(py, aim.misses)))
+    }
+
+    /// Where bound points go; into `out` where it is given.
+    fn deform<'py>(
+        &self,
+        py: Python<'py>,
+        bound: &Deformer,
+        maps: bool,
+        out: Option<Bound<'py, PyArray2<f64>>>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Deformed<'py>> {
+        let aim = py.detach(|| self.0.aim()).map_err(raised)?;
+        let orientations = self.0.session().points.orientations();
+        let pose = Pose { q: &aim.targets, orientations: orientations.as_deref() };
+        bound.frame(py, pose, self.0.session().settings.temperature, maps, out, progress)
+    }
+
+    /// What happens to the control points, in the file of a shape where one is given.
+    fn report(&self, py: Python<'_>, shape: Option<&ShapeFile>) -> PyResult<Report> {
+        let held = shape.map(|shape| (&shape.0, shape.0.step().unwrap_or(0.0)));
+        py.detach(|| {
+            let aim = self.0.aim()?;
+            let Some((shape, step)) = held else {
+                return self.0.report(&aim, None);
+            };
+            // What the file cannot hold at all is refused when it is written.
+            let round = |places: &[f64]| shape.round(places).unwrap_or_else(|_| places.to_vec());
+            self.0.report(&aim, Some(&Held { format: shape.format().name(), round: &round, step }))
+        })
+        .map(Report)
+        .map_err(raised)
+    }
+
+    /// What is likely bad about a shape; `other`: called for a map of other weights (or None), if that might help.
+    fn advise(
+        &self,
+        py: Python<'_>,
+        x: PyReadonlyArray2<'_, f64>,
+        faces: PyReadonlyArray2<'_, u32>,
+        other: Option<Py<PyAny>>,
+    ) -> PyResult<Vec<Told>> {
+        let (x, (faces, _)) = (x.as_slice()?, faces.as_slice()?.as_chunks::<3>());
+        let mut failed = None;
+        let mut made = || -> Option<neuralmls_session::Map> {
+            Python::attach(|py| {
+                let found = other.as_ref()?.call0(py).and_then(|map| Ok(map.extract::<Option<Py<Map>>>(py)?));
+                found.map_err(|error| failed = Some(error)).ok().flatten().map(|map| map.get().0.clone())
+            })
+        };
+        let found = py.detach(|| self.0.advise(&self.0.probe(x, faces)?, &mut made)).map_err(raised)?;
+        let told = |advice: Advice| {
+            (advice.kind, advice.sentence, advice.place, advice.control_points, advice.amount)
+        };
+        failed.map_or_else(|| Ok(found.into_iter().map(told).collect()), Err)
+    }
+
+    /// Places all over a shape, and what this map does there.
+    fn look<'py>(
+        &self,
+        py: Python<'py>,
+        x: PyReadonlyArray2<'py, f64>,
+        faces: PyReadonlyArray2<'py, u32>,
+    ) -> PyResult<Look<'py>> {
+        let (x, (faces, _)) = (x.as_slice()?, faces.as_slice()?.as_chunks::<3>());
+        let looked = || -> Result<_, Error> {
+            let probe = self.0.probe(x, faces)?;
+            let look = self.0.look(&probe)?;
+            Ok((probe, look))
+        };
+        let (probe, look) = py.detach(looked).map_err(raised)?;
+        let dim = self.0.session().points.dim();
+        let far = probe.far().into_iter().map(|(far, _)| far).collect();
+        Ok((
+            table(py, probe.places().to_vec(), dim)?,
+            table(py, look.positions, dim)?,
+            PyArray1::from_vec(py, look.determinants),
+            PyArray1::from_vec(py, look.stretches),
+            PyArray1::from_vec(py, far),
+        ))
+    }
+
+    fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &self.0.to_bytes())
+    }
+
+    #[staticmethod]
+    fn from_bytes(data: &[u8]) -> PyResult<Map> {
+        neuralmls_session::Map::from_bytes(data).map(Map).map_err(raised)
+    }
+}
+
+/// Places, where they go, their determinants, stretches, and distances from the control points.
+type Look<'py> = (
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+);

@@ -98,8 +98,7 @@ impl Weights {
     ) -> PyResult<Weights> {
         let (dim, p) = (p.shape()[1], p.as_slice()?);
         let frame = frame(bounds, p, dim)?;
-        let training =
-            Training { width, schedule: Schedule::Cosine(steps), rate, seed, fourier_sigma: None };
+        let training = Training { width, schedule: Schedule::Cosine(steps), rate, seed, fourier_sigma: None };
         let samples = Samples { x: x.as_slice()?, labels: labels.as_slice()?, batch };
         run(py, progress, |report| {
             neuralmls_core::Weights::shape_aware(p, dim, frame, samples, softness, &training, report)
@@ -196,7 +195,9 @@ impl Weights {
     #[getter]
     fn parameters(&self) -> Option<(f64, f64)> {
         match &*self.0 {
-            neuralmls_core::Weights::InverseDistance(function) => Some((function.alpha(), function.epsilon())),
+            neuralmls_core::Weights::InverseDistance(function) => {
+                Some((function.alpha(), function.epsilon()))
+            }
             _ => None,
         }
     }

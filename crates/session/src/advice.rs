@@ -41,6 +41,9 @@ impl Map {
     /// Where there are no points, or a face names none.
     pub fn probe(&self, x: &[f64], faces: &[[u32; 3]]) -> Result<Probe, Error> {
         let dim = self.session().points.dim();
+        if x.is_empty() {
+            return Err(Error::argument("x: expected at least one point, found none"));
+        }
         let places = neuralmls_core::places(x, dim, faces, neuralmls_core::PLACES)?;
         let side = 2.0 * neuralmls_core::Frame::around(x, dim).half;
         let careful = self.session().settings.handles != HandlesSetting::Exact;
@@ -83,9 +86,9 @@ impl Map {
                 Kind::Folds(part) => {
                     let help = match advice.better {
                         Some(better) => better_in_words(better),
-                        None => self
-                            .with_other(probe, pose, other, |(folded, _)| folded)?
-                            .unwrap_or("move the control points there less far towards or past each other".into()),
+                        None => self.with_other(probe, pose, other, |(folded, _)| folded)?.unwrap_or(
+                            "move the control points there less far towards or past each other".into(),
+                        ),
                     };
                     let sentence = format!(
                         "{} of the shape is folded over, most of all near {}, at {}; {help}",
@@ -138,8 +141,7 @@ impl Map {
             .zip(landed.chunks_exact(points.dim()))
             .map(|(point, at)| distance(&point.target, at))
             .collect();
-        let longest =
-            points.iter().map(|point| distance(&point.target, &point.position)).fold(0.0, f64::max);
+        let longest = points.iter().map(|point| distance(&point.target, &point.position)).fold(0.0, f64::max);
         let mut allowed = ARRIVED * self.side();
         if self.session().settings.handles == HandlesSetting::Soft {
             allowed = allowed.max((SHORT * longest).min(WIDE * self.side()));
@@ -149,8 +151,10 @@ impl Map {
         let Some(&worst) = short.first() else {
             return Ok(None);
         };
-        let named: Vec<String> =
-            short.iter().map(|&i| format!("{} by {}", quoted(&points[i].name), general(away[i], 3))).collect();
+        let named: Vec<String> = short
+            .iter()
+            .map(|&i| format!("{} by {}", quoted(&points[i].name), general(away[i], 3)))
+            .collect();
         Ok(Some(Advice {
             kind: "misses",
             sentence: format!(
@@ -195,7 +199,8 @@ impl Map {
         let theirs = Probe::new(other.weights(), probe.places(), probe.side(), self.transform(), careful)?;
         let now = part(probe.parts(pose, temperature, &adherence)?);
         let then = part(theirs.parts(pose, temperature, &adherence)?);
-        Ok((then <= now / 2.0).then(|| format!("with {} weights it is {}", other.weights().kind(), percent(then))))
+        Ok((then <= now / 2.0)
+            .then(|| format!("with {} weights it is {}", other.weights().kind(), percent(then))))
     }
 }
 

@@ -33,7 +33,8 @@ impl Settings {
             }
         }
         let (settings, unknown) = json::read_settings(keys)?;
-        let unknown = unknown.get("weights").and_then(Value::as_object).unwrap_or(&unknown).keys().next().cloned();
+        let unknown =
+            unknown.get("weights").and_then(Value::as_object).unwrap_or(&unknown).keys().next().cloned();
         match unknown {
             Some(key) => Err(Error::argument(format!("{}: there is no such setting", shown(&key)))),
             None => Ok(settings),
@@ -44,7 +45,9 @@ impl Settings {
     fn weights(&self, changes: &Map<String, Value>) -> Map<String, Value> {
         let same = changes.get("kind").is_none_or(|kind| kind == self.weights.kind());
         let mut parameters = match json::settings_value(self) {
-            Value::Object(keys) if same => keys.get("weights").and_then(Value::as_object).cloned().unwrap_or_default(),
+            Value::Object(keys) if same => {
+                keys.get("weights").and_then(Value::as_object).cloned().unwrap_or_default()
+            }
             _ => Map::new(),
         };
         parameters.extend(changes.iter().map(|(key, value)| (key.clone(), value.clone())));
@@ -68,7 +71,9 @@ impl Session {
     pub fn with_settings(&self, changes: &str) -> Result<Session, Error> {
         let changes: Map<String, Value> = serde_json::from_str(changes)
             .map_err(|error| Error::argument(format!("settings: expected a JSON object: {error}")))?;
-        let mut session = Session { settings: self.settings.with(&changes)?, has_settings: true, ..self.clone() };
+        let settings = self.settings.with(&changes)?;
+        let has_settings = self.has_settings || settings != Settings::default();
+        let mut session = Session { settings, has_settings, ..self.clone() };
         if session.settings.weights.kind() != self.settings.weights.kind() {
             // What others kept beside the former weights says nothing about these.
             if let Some(kept) = session.others.get_mut("settings").and_then(Value::as_object_mut) {
@@ -91,7 +96,9 @@ mod tests {
     fn what_is_said_goes_before_what_is_there() {
         let settings = with(r#"{"temperature": 2, "handles": 0.5, "weights": {"width": 64}}"#).unwrap();
         assert_eq!(settings.temperature, 2.0);
-        let WeightsSettings::Neural { width, seed, .. } = settings.weights else { panic!("neural by default") };
+        let WeightsSettings::Neural { width, seed, .. } = settings.weights else {
+            panic!("neural by default")
+        };
         assert_eq!((width, seed), (64, 0));
         let changes = serde_json::from_str(r#"{"weights": {"seed": 3}, "handles": null}"#).unwrap();
         let further = settings.with(&changes).unwrap();
@@ -111,7 +118,10 @@ mod tests {
         let says = |changes| with(changes).unwrap_err().message;
         assert_eq!(says(r#"{"colour": 1}"#), "colour: there is no such setting");
         assert_eq!(says(r#"{"weights": {"depth": 1}}"#), "depth: there is no such setting");
-        assert_eq!(says(r#"{"weights": {"alpha": 1}}"#), "alpha belongs to inverse-distance weights, but the weights are neural");
+        assert_eq!(
+            says(r#"{"weights": {"alpha": 1}}"#),
+            "alpha belongs to inverse-distance weights, but the weights are neural"
+        );
         assert_eq!(says(r#"{"temperature": -1}"#), "temperature: expected a number above 0, found -1");
     }
 }

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use neuralmls_core::{
-    progress::Progress, Aim, Deformed, Deformer, Frame, Handles, InverseDistance, PointTree, Pose, Schedule, Trained, Training,
-    Transform, Weights,
+    progress::Progress, Aim, Deformed, Deformer, Frame, Handles, InverseDistance, PointTree, Pose, Schedule,
+    Trained, Training, Transform, Weights,
 };
 
 use crate::{Bounds, Error, HandlesSetting, Session, WeightsSettings};

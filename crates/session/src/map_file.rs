@@ -141,7 +141,9 @@ fn parse(bytes: &[u8]) -> Result<(Weights, Option<String>), Error> {
     let shape = arrays.shape("control_points", 2)?;
     let (m, dim) = (shape[0], shape[1]);
     if !(1..=3).contains(&dim) || !(1..=1000).contains(&m) {
-        return Err(broken(&format!("control_points: expected 1 to 1,000 of 1 to 3 coordinates, found {m} of {dim}")));
+        return Err(broken(&format!(
+            "control_points: expected 1 to 1,000 of 1 to 3 coordinates, found {m} of {dim}"
+        )));
     }
     let p = arrays.doubles("control_points", &[m, dim])?;
     if p.iter().any(|c| !c.is_finite()) {

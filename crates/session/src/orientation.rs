@@ -1,7 +1,7 @@
 //! The rotation, and the scale, that a control point may carry besides its target.
 
 use crate::error::Error;
-use crate::text::{general, number};
+use crate::text::{float, general};
 
 /// Rounding, and a file's last digits, may leave this much of `R^T R - I`.
 const ROUNDING: f64 = 1e-6;
@@ -28,7 +28,7 @@ impl Orientation {
     /// An argument, where a number is out of its range.
     pub fn new(axis: [f64; 3], degrees: f64, scale: f64) -> Result<Self, Error> {
         if axis.iter().any(|c| !c.is_finite()) || axis == [0.0; 3] {
-            let found: Vec<String> = axis.iter().map(|&c| number(c)).collect();
+            let found: Vec<String> = axis.iter().map(|&c| float(c)).collect();
             let found = found.join(", ");
             let expected = "expected three finite numbers that are not all 0";
             return Err(Error::argument(format!("axis: {expected}, found [{found}]")));
@@ -36,14 +36,11 @@ impl Orientation {
         if !degrees.is_finite() {
             return Err(Error::argument(format!(
                 "degrees: expected a finite number, found {}",
-                number(degrees)
+                float(degrees)
             )));
         }
         if !(scale > 0.0 && scale.is_finite()) {
-            return Err(Error::argument(format!(
-                "scale: expected a number above 0, found {}",
-                number(scale)
-            )));
+            return Err(Error::argument(format!("scale: expected a number above 0, found {}", float(scale))));
         }
         Ok(Orientation { axis, degrees, scale })
     }

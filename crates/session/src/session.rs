@@ -5,19 +5,19 @@ use neuralmls_core::Frame;
 
 use crate::error::Error;
 use crate::settings::Settings;
-use crate::files;
+use crate::text::shown_numbers;
 use serde_json::{Map, Value};
 
 /// The frame of a session: the box in which its weights are trained.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Box {
+pub struct Bounds {
     /// The least corner.
     pub min: Vec<f64>,
     /// The greatest corner.
     pub max: Vec<f64>,
 }
 
-impl Box {
+impl Bounds {
     /// The checked box of `dim` coordinates.
     ///
     /// # Errors
@@ -25,18 +25,18 @@ impl Box {
     pub fn new(min: Vec<f64>, max: Vec<f64>, dim: usize) -> Result<Self, Error> {
         for (name, corner) in [("min", &min), ("max", &max)] {
             if corner.len() != dim || corner.iter().any(|c| !c.is_finite()) {
-                let found = files::shown_numbers(corner);
+                let found = shown_numbers(corner);
                 let message = format!("frame: expected {dim} finite numbers for {name}, found {found}");
                 return Err(Error::argument(message));
             }
         }
         let upside_down = min.iter().zip(&max).any(|(low, high)| low > high);
         if upside_down || min == max {
-            let (min, max) = (files::shown_numbers(&min), files::shown_numbers(&max));
+            let (min, max) = (shown_numbers(&min), shown_numbers(&max));
             let message = format!("frame: expected a max above the min, found {min} and {max}");
             return Err(Error::argument(message));
         }
-        Ok(Box { min, max })
+        Ok(Bounds { min, max })
     }
 
     /// The box around points of `dim` coordinates, n x dim.
@@ -50,7 +50,7 @@ impl Box {
                 (min[k], max[k]) = (min[k].min(*c), max[k].max(*c));
             }
         }
-        Box::new(min, max, dim)
+        Bounds::new(min, max, dim)
     }
 
     /// The same as the core has it.
@@ -58,7 +58,7 @@ impl Box {
     /// # Errors
     /// An argument, where it is of another dimension, or has no size that a number could hold.
     pub fn frame(&self, dim: usize) -> Result<Frame, Error> {
-        let checked = Box::new(self.min.clone(), self.max.clone(), dim)?;
+        let checked = Bounds::new(self.min.clone(), self.max.clone(), dim)?;
         Ok(Frame::of_box(&checked.min, &checked.max)?)
     }
 }
@@ -73,7 +73,7 @@ pub struct Session {
     /// Whether the settings were said, and not only left at their defaults.
     pub has_settings: bool,
     /// The box in which weights are trained; `None`: that of the shape at hand.
-    pub frame: Option<Box>,
+    pub frame: Option<Bounds>,
     /// Keys of other programs, kept. Those within `settings` and `frame` are here under these names.
     pub others: Map<String, Value>,
 }
@@ -99,18 +99,5 @@ impl Session {
             frame: None,
             others: Map::new(),
         }
-    }
-
-    /// The text of a session file, version 2 (docs/session.schema.json). Reading it gives the same session, bit for bit.
-    pub fn to_json(&self) -> String {
-        files::json_text(self)
-    }
-
-    /// The text of a landmark file: names, positions, targets. Settings are no part of it.
-    ///
-    /// # Errors
-    /// A file, where there are orientations, which it cannot hold.
-    pub fn to_csv(&self) -> Result<String, Error> {
-        files::csv_text(self)
     }
 }

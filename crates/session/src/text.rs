@@ -108,6 +108,12 @@ pub fn tuple(values: &[f64], each: impl Fn(f64) -> String) -> String {
     format!("({})", all.join(", "))
 }
 
+/// Numbers as JSON has them, for a sentence.
+pub fn shown_numbers(values: &[f64]) -> String {
+    let all: Vec<String> = values.iter().map(|&value| number(value)).collect();
+    shown(&format!("[{}]", all.join(", ")))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,11 +4,13 @@ use std::collections::HashSet;
 use std::fs;
 use std::path::PathBuf;
 
+use neuralmls_session::session::Box;
 use neuralmls_session::{
-    join, read, Box, ControlPoint, ControlPoints, HandlesSetting, Map, Orientation, Session, Settings,
-    Transform, Value, WeightsSettings,
+    join, read, ControlPoint, ControlPoints, HandlesSetting, Orientation, Session, Settings, Transform,
+    WeightsSettings,
 };
 use proptest::prelude::*;
+use serde_json::{Map, Value};
 
 fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![

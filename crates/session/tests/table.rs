@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::PathBuf;
 
-use neuralmls_session::{join, read, ControlPoint, Error, ErrorKind, Map, Read, Value};
-use serde_json::json;
+use neuralmls_session::{join, read, ControlPoint, Error, ErrorKind, Read};
+use serde_json::{json, Map, Value};
 
 fn folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../tests/sessions")

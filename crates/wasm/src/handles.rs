@@ -4,8 +4,8 @@ use js_sys::Float64Array;
 use neuralmls_core::Pose;
 use wasm_bindgen::prelude::*;
 
-use crate::session::Session;
 use crate::refused;
+use crate::session::Session;
 
 /// The control points of a session as points that are moved themselves.
 #[wasm_bindgen]

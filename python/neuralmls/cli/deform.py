@@ -14,8 +14,7 @@ from neuralmls.cli.stages import Stages
 from neuralmls.errors import ArgumentError, NeuralMLSError
 
 if TYPE_CHECKING:
-    from neuralmls.map import Map
-    from neuralmls.session import Session
+    from neuralmls.session import Map, Session
     from neuralmls.shape import Shape
 
 
@@ -77,6 +76,7 @@ def deform(
     stages, failed = Stages(quiet=quiet), Failed(several=len(shapes) > 1)
     with stages.stage("read"):
         session, ready = _session(points, targets, by_order, saved)
+        source = str(points) if points is not None and session.has_settings else None
         session = inputs.settings_of(said, session)
         session = session.replace(points=moves.moved(session.points, offsets, turns))
         read = []
@@ -96,7 +96,7 @@ def deform(
             results.append(_bent(shape, file, ready, stages, check=check, force=force))
     for sentence in dict.fromkeys([*warnings, *(warning for told in results for warning in told["warnings"])]):
         console.warning(sentence)
-    _tell(results, stages, warnings, points, json=json, quiet=quiet, verbose=verbose)
+    _tell(results, stages, warnings, source, json=json, quiet=quiet, verbose=verbose)
     failed.raise_last()
 
 
@@ -128,7 +128,7 @@ def _session(
     points: Path | None, targets: Path | None, by_order: bool, saved: Path | None
 ) -> tuple[Session, Map | None]:
     """The session as files have it, and the map that was fitted already."""
-    from neuralmls.map import Map
+    from neuralmls.session import Map
 
     if points is None and saved is None:
         raise ArgumentError("--points: expected a file of control points, or a fitted map with --map")
@@ -199,7 +199,7 @@ def _tell(
     results: Sequence[dict[str, Any]],
     stages: Stages,
     warnings: Sequence[str],
-    points: Path | None,
+    source: str | None,
     *,
     json: bool,
     quiet: bool,
@@ -212,6 +212,7 @@ def _tell(
     for told in results:
         told["warnings"] = [*warnings, *told["warnings"]]
         told["seconds"] = stages.seconds
+        told["session"] = source
     if json:
         console.document(results[0] if len(results) == 1 else {"results": list(results)}, out)
     elif not quiet:

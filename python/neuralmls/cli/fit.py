@@ -47,7 +47,10 @@ def fit(
     stages = Stages(quiet=quiet)
     session = inputs.settings_of(said, inputs.read_session(points, targets, by_order=by_order))
     read = [inputs.read_shape(path) for path in shapes]
-    for sentence in [*session.notes, *(note for shape in read for note in inputs.check_points(session.points, points, shape))]:
+    for sentence in [
+        *session.notes,
+        *(note for shape in read for note in inputs.check_points(session.points, points, shape)),
+    ]:
         console.warning(sentence)
     with stages.stage("train") as report:
         map = session.fit(*read, progress=report)

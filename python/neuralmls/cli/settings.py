@@ -1,4 +1,4 @@
-"""The options that say how to deform, shared by the commands that fit weights: what a person says goes before a session."""
+"""The options that say how to deform: what a person says goes before what a session has."""
 
 from __future__ import annotations
 
@@ -19,9 +19,7 @@ class HandlesType(click.ParamType[str | float]):
 
     name = "auto|exact|soft|0..1"
 
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> str | float:
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str | float:
         """Return the word or the number; its range is checked with the other settings."""
         if value in ("auto", "exact", "soft"):
             return str(value)

@@ -10,8 +10,8 @@ from typing import Any, TextIO
 
 from neuralmls.cli import console
 from neuralmls.cli.inputs import longest_side
-from neuralmls.map import Map
 from neuralmls.report import Advice, Report
+from neuralmls.session import Map
 from neuralmls.shape import Shape
 from neuralmls.weights import NetworkWeights
 

@@ -6,15 +6,14 @@ import http.client
 import os
 import secrets
 import shutil
+from collections.abc import Collection, Mapping
 from http.server import BaseHTTPRequestHandler
 from io import BytesIO
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, BinaryIO
+from typing import BinaryIO, Protocol
 
+from neuralmls.editor_server.connections import Connections
 from neuralmls.editor_server.folder import File
-
-if TYPE_CHECKING:
-    from neuralmls.editor_server.server import EditorServer
 
 TYPES = {
     ".css": "text/css; charset=utf-8",
@@ -39,10 +38,27 @@ HEADERS = {
 LONGEST_HEAD = 16 * 1024
 
 
+class Serving(Protocol):
+    """What a handler asks of its server."""
+
+    contents: Mapping[str, File | bytes]
+    hosts: Collection[str]
+    policy: str
+    token: str
+    connections: Connections
+
+    @property
+    def url(self) -> str:
+        """The editor's address."""
+
+    def redeem(self, ticket: str) -> bool:
+        """Whether this is the address that the browser was started with, which holds once."""
+
+
 class Handler(BaseHTTPRequestHandler):
     """One request, after which the connection is closed."""
 
-    server: EditorServer
+    server: Serving  # type: ignore[assignment]
     server_version = "neuralmls"
     sys_version = ""
     timeout = 60

@@ -182,7 +182,9 @@ def test_what_benchmark_cannot_do_is_refused(refused, folder, here):
 
 
 def test_rotations_are_left_out_and_that_is_said(run, here):
-    points = nm.ControlPoints.read("points.csv").moved({"top": [0, 1, 0]}).oriented({"top": nm.Orientation((0, 1, 0), 40)})
+    points = (
+        nm.ControlPoints.read("points.csv").moved({"top": [0, 1, 0]}).oriented({"top": nm.Orientation((0, 1, 0), 40)})
+    )
     points.write("turned.json")
     ran = run("compare", "shape.obj", "--points", "turned.json", "--methods", "rbf")
     assert ran.code == 0

@@ -316,9 +316,9 @@ fn a_frame_after_its_weights_were_prepared_finds_them() {
     let q = [-2.0, 0.0, 0.0, 2.0, 0.5, 0.0, 0.0, 2.5, 0.5];
     let deformer = bound(&x, &p, 3, Transform::Rigid);
     deformer.prepare(0.5).unwrap();
-    let prepared = deformer.weights(0.5);
+    let prepared = deformer.weights(0.5).unwrap();
     let y = deformer.deform(&q, 0.5, false, &mut |_| true).unwrap().positions;
-    assert!(Arc::ptr_eq(&prepared, &deformer.weights(0.5)));
+    assert!(Arc::ptr_eq(&prepared, &deformer.weights(0.5).unwrap()));
     assert_eq!(
         y,
         bound(&x, &p, 3, Transform::Rigid).deform(&q, 0.5, false, &mut |_| true).unwrap().positions

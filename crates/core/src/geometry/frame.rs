@@ -3,7 +3,8 @@
 //! Computed in double precision before anything is rounded to single, so that a shape half a million metres from the origin
 //! keeps its millimetres.
 
-use crate::error::{check_points, Error};
+use crate::check::check_points;
+use crate::error::Error;
 use crate::machine::parallel::of_blocks;
 
 /// `x_normalised = (x - centre) / half`: the box's longest side becomes [-1, 1].

@@ -4,12 +4,12 @@
 //! already there. What differs: the first is the point farthest from the centroid, not any; the candidates are vertices and samples
 //! of the surface by area, so that plain parts get their share too.
 
-use rand_chacha::rand_core::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-
-use crate::error::{check_points, Error};
+use crate::check::check_points;
+use crate::error::Error;
 use crate::geometry::Frame;
+use crate::machine::memory::room;
 use crate::machine::progress::{report, Progress};
+use crate::machine::random::Random;
 
 /// Candidates of each kind, as a minimum and for each control point: enough that more of them move no point by more than about a
 /// hundredth of the shape.
@@ -52,7 +52,7 @@ pub fn farthest_points(
     let mut few = vertices.clone();
     random.choose(&mut few, size);
     // The vertices first, then places of the surface between them.
-    let mut candidates: Vec<Place> = few.iter().map(|&vertex| points[vertex as usize]).collect();
+    let mut candidates: Vec<Position> = few.iter().map(|&vertex| points[vertex as usize]).collect();
     if let Some(surface) = &surface {
         candidates.extend((0..size).map(|_| surface.sample(&mut random)));
     }
@@ -91,7 +91,7 @@ pub fn farthest_of(
     progress: &mut Progress<'_>,
 ) -> Result<Vec<usize>, Error> {
     check_points("candidates", x, dim)?;
-    let place = |x: &[f64]| -> Place { std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0)) };
+    let place = |x: &[f64]| -> Position { std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0)) };
     spread(&x.chunks_exact(dim).map(place).collect::<Vec<_>>(), count, progress)
 }
 
@@ -118,29 +118,30 @@ pub fn sample_surface(
 
 /// A place relative to the box of the shape, so that samples keep their digits far from the origin and squares neither over- nor
 /// underflow.
-type Place = [f64; 3];
+type Position = [f64; 3];
 
-fn places(x: &[f64], dim: usize) -> Result<(Frame, Vec<Place>), Error> {
+fn places(x: &[f64], dim: usize) -> Result<(Frame, Vec<Position>), Error> {
     check_points("positions", x, dim)?;
     let frame = Frame::around(x, dim);
-    let enter = |x: &[f64]| -> Place {
+    let enter = |x: &[f64]| -> Position {
         std::array::from_fn(|k| x.get(k).map_or(0.0, |x| (x - frame.centre[k]) / frame.half))
     };
-    let places: Vec<Place> = x.chunks_exact(dim).map(enter).collect();
+    let mut places: Vec<Position> = room(x.len() / dim)?;
+    places.extend(x.chunks_exact(dim).map(enter));
     Ok((frame, places))
 }
 
 /// Appends a place in the coordinates of the points.
-fn leave(frame: &Frame, place: &Place, dim: usize, to: &mut Vec<f64>) {
+fn leave(frame: &Frame, place: &Position, dim: usize, to: &mut Vec<f64>) {
     to.extend((0..dim).map(|k| frame.centre[k] + frame.half * place[k]));
 }
 
 /// Places around their centroid, so large that squares neither over- nor underflow.
-fn centred(places: &[Place]) -> Result<Vec<Place>, Error> {
+fn centred(places: &[Position]) -> Result<Vec<Position>, Error> {
     let count = places.len() as f64;
-    let mean: Place = std::array::from_fn(|k| places.iter().map(|place| place[k]).sum::<f64>() / count);
-    let mut centred: Vec<Place> =
-        places.iter().map(|place| std::array::from_fn(|k| place[k] - mean[k])).collect();
+    let mean: Position = std::array::from_fn(|k| places.iter().map(|place| place[k]).sum::<f64>() / count);
+    let mut centred: Vec<Position> = room(places.len())?;
+    centred.extend(places.iter().map(|place| -> Position { std::array::from_fn(|k| place[k] - mean[k]) }));
     let size = centred.iter().flatten().fold(0.0, |size: f64, c| size.max(c.abs()));
     if size > 0.0 {
         centred.iter_mut().flatten().for_each(|c| *c /= size);
@@ -153,9 +154,10 @@ fn centred(places: &[Place]) -> Result<Vec<Place>, Error> {
 }
 
 /// The candidates that are farthest from each other, at most `count`: fewer if fewer are in distinct places.
-fn spread(candidates: &[Place], count: usize, progress: &mut Progress<'_>) -> Result<Vec<usize>, Error> {
+fn spread(candidates: &[Position], count: usize, progress: &mut Progress<'_>) -> Result<Vec<usize>, Error> {
     let candidates = centred(candidates)?;
-    let mut away = vec![f64::INFINITY; candidates.len()];
+    let mut away = room(candidates.len())?;
+    away.resize(candidates.len(), f64::INFINITY);
     let mut chosen = Vec::with_capacity(count.min(candidates.len()));
     // The farthest from the centroid; from then on the farthest from those that are chosen. The first of equals.
     let farther =
@@ -182,20 +184,20 @@ fn spread(candidates: &[Place], count: usize, progress: &mut Progress<'_>) -> Re
     Ok(chosen)
 }
 
-fn squared_distance(a: &Place, b: &Place) -> f64 {
+fn squared_distance(a: &Position, b: &Position) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
 /// The faces that have area.
 struct Surface<'a> {
-    points: &'a [Place],
+    points: &'a [Position],
     faces: Vec<[u32; 3]>,
     /// The area of each face and those before it.
     sums: Vec<f64>,
 }
 
 impl<'a> Surface<'a> {
-    fn new(points: &'a [Place], all: &[[u32; 3]]) -> Result<Option<Surface<'a>>, Error> {
+    fn new(points: &'a [Position], all: &[[u32; 3]]) -> Result<Option<Surface<'a>>, Error> {
         let n = points.len();
         if let Some(face) = all.iter().find(|face| face.iter().any(|&corner| corner as usize >= n)) {
             let found = face.map(|corner| corner.to_string()).join(", ");
@@ -206,9 +208,9 @@ impl<'a> Surface<'a> {
         let (mut faces, mut sums, mut sum) = (Vec::new(), Vec::new(), 0.0);
         for &face in all {
             let [a, b, c] = face.map(|corner| points[corner as usize]);
-            let edge = |p: Place| -> Place { std::array::from_fn(|k| p[k] - a[k]) };
+            let edge = |p: Position| -> Position { std::array::from_fn(|k| p[k] - a[k]) };
             let (u, v) = (edge(b), edge(c));
-            let dot = |a: &Place, b: &Place| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+            let dot = |a: &Position, b: &Position| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
             let area = (dot(&u, &u) * dot(&v, &v) - dot(&u, &v).powi(2)).max(0.0).sqrt();
             if area > 0.0 {
                 sum += area;
@@ -227,7 +229,7 @@ impl<'a> Surface<'a> {
     }
 
     /// A place on the surface, each as likely as another.
-    fn sample(&self, random: &mut Random) -> Place {
+    fn sample(&self, random: &mut Random) -> Position {
         let at = random.unit() * self.sums[self.sums.len() - 1];
         let face = self.sums.partition_point(|&sum| sum <= at).min(self.faces.len() - 1);
         let [a, b, c] = self.faces[face].map(|corner| self.points[corner as usize]);
@@ -239,32 +241,6 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// The generator that one seed means on every machine.
-struct Random(ChaCha8Rng);
-
-impl Random {
-    fn new(seed: u64) -> Random {
-        Random(ChaCha8Rng::seed_from_u64(seed))
-    }
-
-    /// Uniform in [0, 1), with the 53 bits that a number has.
-    fn unit(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Leaves `count` of the items, each as likely as another (Fisher and Yates); all if there are no more.
-    fn choose(&mut self, items: &mut Vec<u32>, count: usize) {
-        if items.len() <= count {
-            return;
-        }
-        for i in 0..count {
-            let j = i + (self.unit() * (items.len() - i) as f64) as usize;
-            items.swap(i, j);
-        }
-        items.truncate(count);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -273,13 +249,13 @@ mod tests {
     const TWO_FACES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 
     /// Each next point by the definition, with nothing kept.
-    fn naive(candidates: &[Place], count: usize) -> Vec<usize> {
+    fn naive(candidates: &[Position], count: usize) -> Vec<usize> {
         let n = candidates.len() as f64;
         let mean = std::array::from_fn(|k| candidates.iter().map(|c| c[k]).sum::<f64>() / n);
         let mut chosen: Vec<usize> = Vec::new();
         for _ in 0..count {
             let score = |i: usize| {
-                let to = |place: &Place| squared_distance(&candidates[i], place);
+                let to = |place: &Position| squared_distance(&candidates[i], place);
                 chosen.iter().map(|&j| to(&candidates[j])).reduce(f64::min).unwrap_or_else(|| to(&mean))
             };
             let best = (0..candidates.len()).max_by(|&i, &j| score(i).total_cmp(&score(j)).then(j.cmp(&i)));
@@ -291,7 +267,7 @@ mod tests {
     #[test]
     fn each_point_is_the_farthest_from_those_before_it() {
         let mut random = Random::new(5);
-        let candidates: Vec<Place> = (0..300).map(|_| std::array::from_fn(|_| random.unit())).collect();
+        let candidates: Vec<Position> = (0..300).map(|_| std::array::from_fn(|_| random.unit())).collect();
         assert_eq!(spread(&candidates, 20, &mut |_| true).unwrap(), naive(&candidates, 20));
     }
 

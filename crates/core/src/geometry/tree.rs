@@ -14,9 +14,10 @@ use std::cmp::Ordering;
 use std::ops::Range;
 use std::sync::Mutex;
 
-use crate::error::{check_points, Error};
+use crate::check::check_points;
+use crate::error::Error;
 use crate::geometry::Frame;
-use crate::machine::memory::filled;
+use crate::machine::memory::{room, try_filled, zeros};
 use crate::machine::parallel::for_each_task;
 use crate::machine::progress::{report, Progress};
 use crate::machine::simd::{Aligned, WIDTH};
@@ -105,15 +106,16 @@ impl PointTree {
             return Err(Error::argument("x", format!("expected at most 2^32 - 1 points, found {n}")));
         }
         report(progress, 0.0)?;
-        let mut points = filled(Vec::new(), n, [0.0; 4], 1 << 12, |block, points| {
+        let mut points = try_filled(Vec::new(), n, [0.0; 4], 1 << 12, |block, points| {
             let first = block << 12;
             for (i, (point, x)) in points.iter_mut().zip(x[dim * first..].chunks_exact(dim)).enumerate() {
                 let [x, y, z] = frame.enter_single(x);
                 *point = [x, y, z, f32::from_bits((first + i) as u32)];
             }
-        });
-        let mut boxes =
-            vec![Region { centre: [0.0; 3], half: [0.0; 3] }; (2 * n.div_ceil(LEAF)).saturating_sub(1)];
+        })?;
+        let nodes = (2 * n.div_ceil(LEAF)).saturating_sub(1);
+        let mut boxes = room(nodes)?;
+        boxes.resize(nodes, Region { centre: [0.0; 3], half: [0.0; 3] });
         build(&mut points, &mut boxes, progress)?;
 
         report(progress, 1.0)?;
@@ -146,15 +148,15 @@ impl PointTree {
     }
 
     /// The points in the order in which they were given, as exact as they are here.
-    pub(crate) fn given(&self) -> Vec<f64> {
-        let mut x = vec![0.0; self.dim * self.len()];
+    pub(crate) fn given(&self) -> Result<Vec<f64>, Error> {
+        let mut x = zeros(self.dim * self.len())?;
         for (place, index) in self.order().enumerate() {
             let point = self.point(place);
             for (k, x) in x[self.dim * index..][..self.dim].iter_mut().enumerate() {
                 *x = self.frame.centre[k] + self.frame.half * f64::from(point[k]);
             }
         }
-        x
+        Ok(x)
     }
 
     fn index(&self, place: usize) -> usize {

@@ -3,4 +3,5 @@
 pub mod memory;
 pub(crate) mod parallel;
 pub mod progress;
+pub(crate) mod random;
 pub(crate) mod simd;

@@ -4,7 +4,8 @@
 //! the paper), so besides the weights themselves this module gives them *relative to the second-largest*: numbers that stay
 //! finite, and keep all their digits, when T is so small that every weight but one underflows.
 
-use crate::error::{check_number, Error};
+use crate::check::check_number;
+use crate::error::Error;
 
 mod packed;
 

@@ -13,7 +13,8 @@
 //! as if it had been 6e-8 of itself more or less, and w_second makes the sum of the rounded ones 1 exactly, in double
 //! precision. (A single w_second would put the error of the sum of a thousand weights on one of them.)
 
-use crate::machine::memory::filled;
+use crate::error::Error;
+use crate::machine::memory::try_filled;
 use crate::machine::simd::loops::{multiply_add_f32, multiversion_loops};
 use crate::machine::simd::{multiversion, Lanes, Simd};
 
@@ -38,13 +39,21 @@ pub(crate) struct PackedWeights {
 
 impl PackedWeights {
     /// Packs `logits` (n x m), in the memory of `old` where there is one.
-    pub(crate) fn new(logits: &[f32], m: usize, temperature: f64, old: Option<PackedWeights>) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::Memory`].
+    pub(crate) fn new(
+        logits: &[f32],
+        m: usize,
+        temperature: f64,
+        old: Option<PackedWeights>,
+    ) -> Result<Self, Error> {
         debug_assert!(m > 0 && u32::try_from(m).is_ok() && logits.len().is_multiple_of(m));
         let size = m + MORE;
         let count = (logits.len() / m).div_ceil(LANES) * size;
         let memory = old.map(|old| old.rows).unwrap_or_default();
         let simd = Simd::detect();
-        let rows = filled(memory, count, Row([0.0; LANES]), BLOCKS * size, |index, rows| {
+        let rows = try_filled(memory, count, Row([0.0; LANES]), BLOCKS * size, |index, rows| {
             let logits = &logits[BLOCKS * LANES * m * index..];
             for (rows, logits) in rows.chunks_exact_mut(size).zip(logits.chunks(LANES * m)) {
                 if logits.len() == LANES * m {
@@ -56,8 +65,8 @@ impl PackedWeights {
                     clear(rows, logits.len() / m);
                 }
             }
-        });
-        PackedWeights { m, temperature, rows }
+        })?;
+        Ok(PackedWeights { m, temperature, rows })
     }
 
     /// Of which temperature these are.

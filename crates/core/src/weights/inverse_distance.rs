@@ -3,8 +3,10 @@
 //! Schaefer, McPhail, Warren, "Image deformation using moving least squares", 2006. With `d` the distance and alpha an exponent on its
 //! *square*, alpha = 0.5 is `1/d`.
 
-use crate::error::{check_number, check_points, Error};
+use crate::check::{check_number, check_points};
+use crate::error::Error;
 use crate::geometry::Frame;
+use crate::machine::memory::zeros;
 use crate::machine::parallel::for_each_block;
 use crate::machine::progress::{report, Progress};
 
@@ -68,7 +70,7 @@ impl InverseDistance {
     pub fn logits(&self, x: &[f64], progress: &mut Progress<'_>) -> Result<Vec<f32>, Error> {
         check_points("x", x, self.dim)?;
         let (dim, m) = (self.dim, self.p.len() / self.dim);
-        let mut logits = vec![0.0; x.len() / dim * m];
+        let mut logits = zeros(x.len() / dim * m)?;
         let chunks = logits.len().div_ceil(CHUNK * m).max(1);
         for (index, (x, logits)) in x.chunks(CHUNK * dim).zip(logits.chunks_mut(CHUNK * m)).enumerate() {
             report(progress, index as f64 / chunks as f64)?;

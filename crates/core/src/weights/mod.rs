@@ -119,7 +119,7 @@ impl Weights {
             Weights::Neural(trained) | Weights::ShapeAware(trained) => {
                 trained.network.logits_of_tree(tree, progress)
             }
-            Weights::InverseDistance(function) => function.logits(&tree.given(), progress),
+            Weights::InverseDistance(function) => function.logits(&tree.given()?, progress),
         }
     }
 }
@@ -134,7 +134,8 @@ mod tests {
         let training = Training { width: 16, ..Training::default() };
         let neural = Weights::neural(&p, 2, Frame::IDENTITY, &training, &mut |_| true).unwrap();
         let samples = Samples { x: &x, labels: &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0], batch: 2 };
-        let aware = Weights::shape_aware(&p, 2, Frame::IDENTITY, samples, 2.0, &training, &mut |_| true).unwrap();
+        let aware =
+            Weights::shape_aware(&p, 2, Frame::IDENTITY, samples, 2.0, &training, &mut |_| true).unwrap();
         let function = InverseDistance::new(&p, 2, Frame::IDENTITY, 1.0, 0.0).unwrap();
         let direct = function.logits(&x, &mut |_| true).unwrap();
         let distance = Weights::InverseDistance(function);

@@ -1,6 +1,6 @@
-//! Landmark lists that begin with a count, `.land`: a name and the coordinates a line.
+//! Landmark lists that begin with a count, `.land`: the coordinates a line, after a name or alone.
 
-use super::landmarks::{numbers, Landmarks};
+use super::landmarks::{name_of, numbers, Landmarks};
 use crate::error::Error;
 use crate::session::Read;
 use crate::text::shown;
@@ -27,14 +27,19 @@ pub fn rows(text: &str) -> impl Iterator<Item = Row<'_>> {
         .filter(|row| !row.words.is_empty())
 }
 
-/// Whether a file begins with a count, and goes on with names.
+/// Whether a file begins with a count, of so many lines of several words.
 pub fn is(text: &str) -> bool {
     let mut rows = rows(text);
-    let count = rows.next().is_some_and(|row| row.words.len() == 1 && row.words[0].parse::<usize>().is_ok());
-    count && rows.next().is_some_and(|row| row.words.len() > 1 && row.words[0].parse::<f64>().is_err())
+    let count =
+        rows.next().filter(|row| row.words.len() == 1).and_then(|row| row.words[0].parse::<usize>().ok());
+    let named = rows.next().is_some_and(|row| row.words.len() > 1 && row.words[0].parse::<f64>().is_err());
+    // Numbers alone are a table, unless there are just as many lines of them.
+    count.is_some_and(|count| {
+        named || count > 1 && rows.filter(|row| row.words.len() > 1).count() == count - 1
+    })
 }
 
-/// As many landmarks as the first line says.
+/// As many landmarks as the first line says. A line of fewer than four numbers has no name.
 pub fn read(text: &str) -> Result<Read, Error> {
     let mut rows = rows(text);
     let found = rows.next();
@@ -43,25 +48,23 @@ pub fn read(text: &str) -> Result<Read, Error> {
         let found = found.map_or("nothing".into(), |row| row.shown());
         return Err(Error::file(format!("line 1: expected the number of landmarks, found {found}")));
     };
-    let mut landmarks: Option<Landmarks> = None;
-    let mut dim = 0;
+    let mut landmarks = Landmarks::new(3);
+    let (mut dim, mut names) = (0, 1);
     for row in rows {
-        let values = numbers(row.words[1..].iter().copied());
-        let Some(values) =
-            values.filter(
-                |values| if dim == 0 { (1..=3).contains(&values.len()) } else { values.len() == dim },
-            )
-        else {
-            let expected = if dim == 0 { "1 to 3".to_string() } else { dim.to_string() };
+        if dim == 0 {
+            names = usize::from(row.words.len() > 3 || row.words[0].parse::<f64>().is_err());
+            dim = (row.words.len() - names).clamp(1, 3);
+            landmarks = Landmarks::new(dim);
+        }
+        let values = numbers(row.words[names.min(row.words.len())..].iter().copied());
+        let Some(values) = values.filter(|values| values.len() == dim) else {
             let (line, found) = (row.line, row.shown());
-            return Err(Error::file(format!(
-                "line {line}: expected a name and {expected} numbers, found {found}"
-            )));
+            let (a, s) = (if names == 1 { "a name and " } else { "" }, if dim == 1 { "" } else { "s" });
+            return Err(Error::file(format!("line {line}: expected {a}{dim} number{s}, found {found}")));
         };
-        dim = values.len();
-        landmarks.get_or_insert_with(|| Landmarks::new(dim)).push(row.words[0].to_string(), values, None);
+        let name = if names == 1 { row.words[0].to_string() } else { name_of(landmarks.count()) };
+        landmarks.push(name, values, None);
     }
-    let landmarks = landmarks.unwrap_or(Landmarks::new(3));
     if landmarks.count() != count {
         let found = landmarks.count();
         return Err(Error::file(format!(

@@ -6,14 +6,14 @@
 //! | `table` | CSV and its kin: ours, BigWarp's, OpenSim Creator's, CloudCompare's, NumPy's |
 //! | `slicer` | 3D Slicer's `.mrk.json` and `.fcsv` |
 //! | `picked_points` | MeshLab's `.pp` |
-//! | `idav`, `land`, `tag`, `tps`, `morphologika` | morphometrics and neuroimaging |
+//! | `idav`, `land`, `tag`, `tps`, `morphologika`, `face_points` | morphometrics, neuroimaging, faces |
 //! | `landmarks` | what they share: landmarks, some of them missing, become control points |
 
 use crate::error::Error;
-use crate::session::Read;
-use crate::text::{number, shown};
+use crate::session::{Read, Session};
 
 mod csv_text;
+mod face_points;
 mod idav;
 mod join;
 pub(crate) mod json;
@@ -65,6 +65,8 @@ pub fn read(bytes: &[u8], name: &str) -> Result<Read, Error> {
         tag::read(text)
     } else if idav::is(first) {
         idav::read(text)
+    } else if face_points::is(first) {
+        face_points::read(text)
     } else if tps::is(first) {
         tps::read(text)
     } else if slicer::is_fiducials(text) || ends(".fcsv") {
@@ -76,8 +78,17 @@ pub fn read(bytes: &[u8], name: &str) -> Result<Read, Error> {
     }
 }
 
-/// Numbers as JSON has them, for a sentence.
-pub(crate) fn shown_numbers(values: &[f64]) -> String {
-    let all: Vec<String> = values.iter().map(|&value| number(value)).collect();
-    shown(&format!("[{}]", all.join(", ")))
+impl Session {
+    /// The text of a session file, version 2 (docs/session.schema.json). Reading it gives the same session, bit for bit.
+    pub fn to_json(&self) -> String {
+        json_text(self)
+    }
+
+    /// The text of a landmark file: names, positions, targets. Settings are no part of it.
+    ///
+    /// # Errors
+    /// A file, where there are orientations, which it cannot hold.
+    pub fn to_csv(&self) -> Result<String, Error> {
+        csv_text(self)
+    }
 }

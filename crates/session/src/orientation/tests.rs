@@ -68,8 +68,8 @@ fn numbers_out_of_range_are_named() {
     let says = |axis, degrees, scale| Orientation::new(axis, degrees, scale).unwrap_err().message;
     assert_eq!(
         says([0.0; 3], 1.0, 1.0),
-        "axis: expected three finite numbers that are not all 0, found [0, 0, 0]"
+        "axis: expected three finite numbers that are not all 0, found [0.0, 0.0, 0.0]"
     );
     assert_eq!(says(AXIS, f64::NAN, 1.0), "degrees: expected a finite number, found nan");
-    assert_eq!(says(AXIS, 1.0, -2.0), "scale: expected a number above 0, found -2");
+    assert_eq!(says(AXIS, 1.0, -2.0), "scale: expected a number above 0, found -2.0");
 }

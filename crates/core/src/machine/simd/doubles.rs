@@ -103,7 +103,7 @@ impl Doubles for Pair {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(crate) use x86::{Eight, Four};
+pub(super) use x86::{Eight, Four};
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
@@ -112,11 +112,11 @@ mod x86 {
 
     /// 256 bits.
     #[derive(Clone, Copy)]
-    pub(crate) struct Four(__m256d);
+    pub(in crate::machine::simd) struct Four(__m256d);
 
     /// 512 bits.
     #[derive(Clone, Copy)]
-    pub(crate) struct Eight(__m512d);
+    pub(in crate::machine::simd) struct Eight(__m512d);
 
     /// The methods that are intrinsics.
     macro_rules! intrinsics {
@@ -202,7 +202,7 @@ mod x86 {
         #[inline(always)]
         fn of_both(self, b: Self, places: [i64; 8]) -> Self {
             let [p0, p1, p2, p3, p4, p5, p6, p7] = places;
-            // SAFETY: as for all of this type.
+            // SAFETY: values of this type exist only in kernels compiled for it, where it was detected.
             unsafe {
                 let places = _mm512_setr_epi64(p0, p1, p2, p3, p4, p5, p6, p7);
                 Eight(_mm512_permutex2var_pd(self.0, places, b.0))

@@ -167,7 +167,7 @@ impl Lanes for Portable {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(crate) use x86::{Avx2, Avx512};
+pub(super) use x86::{Avx2, Avx512};
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
@@ -177,11 +177,11 @@ mod x86 {
 
     /// Two registers of 256 bits.
     #[derive(Clone, Copy)]
-    pub(crate) struct Avx2(__m256, __m256);
+    pub(in crate::machine::simd) struct Avx2(__m256, __m256);
 
     /// One register of 512 bits.
     #[derive(Clone, Copy)]
-    pub(crate) struct Avx512(__m512);
+    pub(in crate::machine::simd) struct Avx512(__m512);
 
     /// A method that is an intrinsic on each register.
     macro_rules! intrinsics {

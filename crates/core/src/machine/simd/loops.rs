@@ -28,23 +28,41 @@ pub(crate) fn multiply_add<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
 /// Defines `fn name(simd: Simd, arguments...)` that calls the kernel `body::<FMA>(arguments...)` compiled for `simd`.
 macro_rules! multiversion_loops {
     ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) = $body:ident) => {
-        $crate::machine::simd::compiled! {
-            $(#[$meta])* $vis fn $name($($arg: $type),*) = $body [false] [true] [true]
+        $(#[$meta])*
+        #[allow(clippy::too_many_arguments)]
+        $vis fn $name(simd: $crate::machine::simd::Simd, $($arg: $type),*) {
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx2,fma")]
+                #[allow(clippy::too_many_arguments)]
+                fn avx2($($arg: $type),*) {
+                    $body::<true>($($arg),*)
+                }
+                #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma")]
+                #[allow(clippy::too_many_arguments)]
+                fn avx512($($arg: $type),*) {
+                    $body::<true>($($arg),*)
+                }
+                match simd.set() {
+                    // SAFETY: a `Simd` is made by detection alone: this machine has AVX-512.
+                    $crate::machine::simd::InstructionSet::Avx512 => return unsafe { avx512($($arg),*) },
+                    // SAFETY: as above, AVX2 and fused multiply-add.
+                    $crate::machine::simd::InstructionSet::Avx2 => return unsafe { avx2($($arg),*) },
+                    $crate::machine::simd::InstructionSet::Portable => {}
+                }
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            let _ = simd;
+            $body::<false>($($arg),*)
         }
     };
 }
 pub(crate) use multiversion_loops;
 
-/// The instruction sets that this machine has, for tests of a kernel on each.
-#[cfg(test)]
-pub(crate) fn all() -> impl Iterator<Item = super::Simd> {
-    use super::Simd;
-    [Simd::Portable, Simd::Avx2, Simd::Avx512].into_iter().filter(|simd| *simd <= Simd::best())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::machine::simd::Simd;
 
     #[inline(always)]
     fn squares_body<const FMA: bool>(numbers: &[f64; 64], out: &mut [f64; 64]) {
@@ -57,7 +75,7 @@ mod tests {
     #[test]
     fn every_instruction_set_of_this_machine_gives_the_same_answer() {
         let numbers = std::array::from_fn(|i| (i as f64).sin());
-        for simd in all() {
+        for simd in Simd::all() {
             let mut out = [0.0; 64];
             squares(simd, &numbers, &mut out);
             for (number, square) in numbers.iter().zip(out) {

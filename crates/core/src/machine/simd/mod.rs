@@ -1,8 +1,11 @@
 //! One kernel, compiled for several instruction sets, the best of which is chosen when it runs.
 //!
 //! A kernel is written once over [`Lanes`], sixteen numbers in registers, and `#[inline(always)]`. [`multiversion!`] compiles it
-//! for each instruction set and calls the version that was detected. That call and the intrinsics below are all the
-//! `unsafe` there is: values of [`Avx2`] and [`Avx512`] are made inside such kernels only.
+//! for each instruction set and calls the version that was detected.
+//!
+//! Why that is safe: the types of wide registers are private to this folder. [`Simd::choose`] alone names them, each for kernels that are compiled
+//! for its instruction set; and a [`Simd`] that stands for it is made by detection alone. So no code can make such a value, or call such
+//! a kernel, on a machine that has not got the registers.
 //!
 //! Plain arrays of 16 in place of intrinsics were tried: the compiler turns nested loops over them into gathers. Kernels that are one
 //! loop over lanes, without a nested one, need no intrinsics: [`loops`].
@@ -13,16 +16,19 @@ pub(crate) mod loops;
 mod numbers;
 
 pub(crate) use doubles::{Doubles, WIDEST};
-pub(crate) use lanes::{prefetch, Aligned, Lanes, Portable, WIDTH};
-#[cfg(target_arch = "x86_64")]
-pub(crate) use lanes::{Avx2, Avx512};
+#[cfg(test)]
+pub(crate) use lanes::Portable;
+pub(crate) use lanes::{prefetch, Aligned, Lanes, WIDTH};
 pub(crate) use numbers::{minor, square_of, Numbers};
 
-/// An instruction set that kernels are compiled for. Its values come from [`Simd::detect`] alone, which is what makes
-/// [`multiversion!`] sound.
+/// An instruction set that this machine has: a token that detection alone makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Simd(InstructionSet);
+
+/// What kernels are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(not(target_arch = "x86_64"), allow(dead_code))] // The others are made nowhere else.
-pub(crate) enum Simd {
+pub(crate) enum InstructionSet {
     /// What every machine of the target has.
     Portable,
     /// 256 bits with fused multiply-add (x86-64-v3).
@@ -31,84 +37,115 @@ pub(crate) enum Simd {
     Avx512,
 }
 
+use InstructionSet::{Avx2, Avx512, Portable as Every};
+
 impl Simd {
     /// The best that this machine has; the environment variable `NEURALMLS_SIMD` (portable, avx2) asks for less.
     pub(crate) fn detect() -> Simd {
-        let best = Simd::best();
-        match std::env::var("NEURALMLS_SIMD").as_deref() {
-            Ok("portable") => Simd::Portable,
-            Ok("avx2") => best.min(Simd::Avx2),
+        let best = best();
+        Simd(match std::env::var("NEURALMLS_SIMD").as_deref() {
+            Ok("portable") => Every,
+            Ok("avx2") => best.min(Avx2),
             _ => best,
-        }
+        })
     }
 
+    /// All that this machine has, for tests of a kernel on each.
+    #[cfg(test)]
+    pub(crate) fn all() -> impl Iterator<Item = Simd> {
+        [Every, Avx2, Avx512].into_iter().filter(|set| *set <= best()).map(Simd)
+    }
+
+    /// Which one it is.
+    #[inline(always)]
+    pub(crate) fn set(self) -> InstructionSet {
+        self.0
+    }
+
+    /// The version of a kernel for it: this machine has what that is compiled for.
+    #[inline(always)]
+    pub(crate) fn choose<K: Kernel>(self) -> K::Call {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            Avx512 => K::avx512::<lanes::Avx512>(),
+            #[cfg(target_arch = "x86_64")]
+            Avx2 => K::avx2::<lanes::Avx2>(),
+            _ => K::portable::<lanes::Portable>(),
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+fn best() -> InstructionSet {
+    let avx512 = is_x86_feature_detected!("avx512f")
+        && is_x86_feature_detected!("avx512bw")
+        && is_x86_feature_detected!("avx512dq")
+        && is_x86_feature_detected!("avx512vl");
+    if !(is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")) {
+        Every
+    } else if avx512 {
+        Avx512
+    } else {
+        Avx2
+    }
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn best() -> InstructionSet {
+    Every
+}
+
+/// The versions of one kernel, as [`multiversion!`] makes them.
+pub(crate) trait Kernel {
+    /// Pointers to them, which may be called where the instruction set is.
+    type Call;
+
+    fn portable<L: Lanes>() -> Self::Call;
+    /// Compiled for AVX2 and fused multiply-add.
     #[cfg(target_arch = "x86_64")]
-    pub(crate) fn best() -> Simd {
-        let avx512 = is_x86_feature_detected!("avx512f")
-            && is_x86_feature_detected!("avx512bw")
-            && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512vl");
-        if !(is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")) {
-            Simd::Portable
-        } else if avx512 {
-            Simd::Avx512
-        } else {
-            Simd::Avx2
-        }
-    }
-
-    #[cfg(not(target_arch = "x86_64"))]
-    pub(crate) fn best() -> Simd {
-        Simd::Portable
-    }
+    fn avx2<L: Lanes>() -> Self::Call;
+    /// Compiled for AVX-512 (F, BW, DQ, VL) too.
+    #[cfg(target_arch = "x86_64")]
+    fn avx512<L: Lanes>() -> Self::Call;
 }
 
 /// Defines `fn name(simd: Simd, arguments...)`, which calls the kernel `body::<L: Lanes>(arguments...)` compiled for `simd`.
 macro_rules! multiversion {
     ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $body:ident) => {
-        $crate::machine::simd::compiled! {
-            $(#[$meta])* $vis fn $name($($arg: $type),*) $(-> $result)? = $body
-            [$crate::machine::simd::Portable] [$crate::machine::simd::Avx2] [$crate::machine::simd::Avx512]
+        $(#[$meta])*
+        #[allow(clippy::too_many_arguments)]
+        $vis fn $name(simd: $crate::machine::simd::Simd, $($arg: $type),*) $(-> $result)? {
+            struct Versions;
+            #[allow(clippy::type_complexity)]
+            impl $crate::machine::simd::Kernel for Versions {
+                type Call = unsafe fn($($type),*) $(-> $result)?;
+
+                fn portable<L: $crate::machine::simd::Lanes>() -> Self::Call {
+                    $body::<L>
+                }
+                #[cfg(target_arch = "x86_64")]
+                fn avx2<L: $crate::machine::simd::Lanes>() -> Self::Call {
+                    #[target_feature(enable = "avx2,fma")]
+                    fn compiled<L: $crate::machine::simd::Lanes>($($arg: $type),*) $(-> $result)? {
+                        $body::<L>($($arg),*)
+                    }
+                    compiled::<L>
+                }
+                #[cfg(target_arch = "x86_64")]
+                fn avx512<L: $crate::machine::simd::Lanes>() -> Self::Call {
+                    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma")]
+                    fn compiled<L: $crate::machine::simd::Lanes>($($arg: $type),*) $(-> $result)? {
+                        $body::<L>($($arg),*)
+                    }
+                    compiled::<L>
+                }
+            }
+            // SAFETY: a `Simd` is made by detection alone: this machine has what the chosen version is compiled for.
+            unsafe { simd.choose::<Versions>()($($arg),*) }
         }
     };
 }
 pub(crate) use multiversion;
-
-/// What [`multiversion!`] and [`loops::multiversion_loops!`] share: the kernel `body::<...>(arguments...)`, compiled with the parameter
-/// that is given for each instruction set.
-macro_rules! compiled {
-    ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),*) $(-> $result:ty)? = $body:ident
-        [$($portable:tt)*] [$($avx2:tt)*] [$($avx512:tt)*]) => {
-        $(#[$meta])*
-        #[allow(clippy::too_many_arguments)]
-        $vis fn $name(simd: $crate::machine::simd::Simd, $($arg: $type),*) $(-> $result)? {
-            #[cfg(target_arch = "x86_64")]
-            {
-                #[target_feature(enable = "avx2,fma")]
-                #[allow(clippy::too_many_arguments)]
-                fn avx2($($arg: $type),*) $(-> $result)? {
-                    $body::<$($avx2)*>($($arg),*)
-                }
-                #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma")]
-                #[allow(clippy::too_many_arguments)]
-                fn avx512($($arg: $type),*) $(-> $result)? {
-                    $body::<$($avx512)*>($($arg),*)
-                }
-                match simd {
-                    // SAFETY: `Simd` names an instruction set only where it was detected.
-                    $crate::machine::simd::Simd::Avx512 => return unsafe { avx512($($arg),*) },
-                    // SAFETY: as above.
-                    $crate::machine::simd::Simd::Avx2 => return unsafe { avx2($($arg),*) },
-                    $crate::machine::simd::Simd::Portable => {}
-                }
-            }
-            #[cfg(not(target_arch = "x86_64"))]
-            let _ = simd;
-            $body::<$($portable)*>($($arg),*)
-        }
-    };
-}
-pub(crate) use compiled;
 
 #[cfg(test)]
 mod tests {
@@ -152,7 +189,7 @@ mod tests {
     #[test]
     fn the_lanes_of_some_bits_are_stored_side_by_side() {
         let a = std::array::from_fn(|i| i as f32);
-        for simd in [Simd::Portable, Simd::Avx2, Simd::Avx512].into_iter().filter(|s| *s <= Simd::best()) {
+        for simd in Simd::all() {
             for bits in (0..=0xffff).step_by(51) {
                 let mut to = [-1.0; WIDTH];
                 compressed(simd, &a, bits, &mut to);
@@ -177,7 +214,7 @@ mod tests {
     #[test]
     fn the_first_lanes_are_stored_and_nothing_beyond_them() {
         let a = std::array::from_fn(|i| i as f32 + 1.0);
-        for simd in [Simd::Portable, Simd::Avx2, Simd::Avx512].into_iter().filter(|s| *s <= Simd::best()) {
+        for simd in Simd::all() {
             for room in 0..20 {
                 let mut to = [0.0; 20];
                 first(simd, &a, &mut to[..room]);
@@ -205,7 +242,7 @@ mod tests {
             |a, _| a.abs(),
             |a, b| if a < b { a } else { b },
         ];
-        for simd in [Simd::Portable, Simd::Avx2, Simd::Avx512].into_iter().filter(|s| *s <= Simd::best()) {
+        for simd in Simd::all() {
             let results = all(simd, &a, &b);
             for (k, operation) in operations.iter().enumerate() {
                 for i in 0..WIDTH {

@@ -4,7 +4,6 @@ use super::super::moments::Moments;
 use super::super::rotation::{anchored, best_rotation};
 use super::super::{matrix, Local, Mls};
 use super::*;
-use crate::machine::simd::loops;
 use crate::softmax::{relative_weights, PackedWeights};
 
 const ALL: [Transform; 3] = [Transform::Rigid, Transform::Similarity, Transform::Affine];
@@ -33,7 +32,7 @@ fn compare(
 ) -> Worst {
     let (n, m) = (x.len(), p.len());
     let handles = Mls::new(p, q, transform);
-    let weights = PackedWeights::new(logits, m, t, None);
+    let weights = PackedWeights::new(logits, m, t, None).unwrap();
     let mut relative = vec![0.0; m];
     let twins: Vec<(Local<3>, f64)> = x
         .iter()
@@ -44,7 +43,7 @@ fn compare(
         })
         .collect();
     let mut worst = Worst::default();
-    for simd in loops::all() {
+    for simd in Simd::all() {
         let mut lanes = handles.batch(Frame::IDENTITY).unwrap();
         lanes.simd = simd;
         let (mut y, mut maps) = (vec![0.0; 3 * n], vec![0.0; 9 * n]);
@@ -136,7 +135,7 @@ fn assert_close(given: &Given, q: &Points, t: f64, transform: Transform, positio
     let worst = compare(&given.x, &given.p, q, &given.logits, t, transform);
     let case = format!("{} control points, {transform:?}, T = {t}: {worst:?}", given.p.len());
     assert!(worst.position <= position && worst.turn <= turn, "{case}");
-    worst.unsound as f64 / (given.x.len() * loops::all().count()) as f64
+    worst.unsound as f64 / (given.x.len() * Simd::all().count()) as f64
 }
 
 #[test]
@@ -235,7 +234,8 @@ fn points_on_control_points_go_where_those_go() {
         let lanes = Mls::new(&given.p, &q, Transform::Rigid).batch(Frame::IDENTITY).unwrap();
         let mut y = vec![0.0; 3 * 64];
         let points = BatchPoints { x: given.x.as_flattened(), y: &mut y, maps: &mut [] };
-        lanes.deform(PackedWeights::new(&given.logits, 8, t, None).blocks(0), points, &mut Scratch::new());
+        let weights = PackedWeights::new(&given.logits, 8, t, None).unwrap();
+        lanes.deform(weights.blocks(0), points, &mut Scratch::new());
         for (i, y) in y.chunks(3).enumerate() {
             assert!(y.iter().zip(q[i % 8]).all(|(a, b)| (a - b).abs() < 1e-12), "T = {t}: {y:?}");
         }
@@ -268,7 +268,7 @@ fn rotations_are_those_of_double_precision_at_every_gap() {
                     })
                 })
                 .collect();
-            for simd in loops::all() {
+            for simd in Simd::all() {
                 let mut scratch = Scratch::new();
                 for (lane, moment) in moments.iter().enumerate() {
                     for k in 0..9 {

@@ -348,7 +348,7 @@ fn lanes_agree_with_the_twin() {
             .collect();
         let logits: Vec<f32> = (0..n * m).map(|_| 8.0 * place()[0] as f32).collect();
         for t in TEMPERATURES {
-            let weights = PackedWeights::new(&logits, m, t, None);
+            let weights = PackedWeights::new(&logits, m, t, None).unwrap();
             for transform in ALL {
                 let flat = flat(&turns);
                 let handles = Mls::with_oriented(&p, &q, oriented(&flat, &p), transform);

@@ -27,7 +27,7 @@ fn check(logits: &[f32], m: usize, temperature: f64, tolerance: f64, rows: &[Row
 }
 
 fn check_all(logits: &[f32], m: usize, temperature: f64) {
-    for simd in crate::machine::simd::loops::all() {
+    for simd in Simd::all() {
         let mut rows = vec![Row([f32::NAN; LANES]); m + MORE];
         pack(simd, logits, temperature, &mut rows);
         check(logits, m, temperature, 4e-7, &rows);
@@ -74,14 +74,15 @@ fn infinite_and_equal_logits_are_packed_as_weights() {
 #[test]
 fn a_block_that_is_not_full_is_filled_with_nothing() {
     let logits: Vec<f32> = (0..3 * 21).map(|i| (i as f32).sin()).collect();
-    let packed = PackedWeights::new(&logits, 3, 0.7, None);
+    let packed = PackedWeights::new(&logits, 3, 0.7, None).unwrap();
     let blocks: Vec<&[Row]> = packed.blocks(0).collect();
     assert_eq!(blocks.len(), 2);
     check(&logits[..3 * LANES], 3, 0.7, 3e-7, blocks[0]);
     check(&logits[3 * LANES..], 3, 0.7, 3e-7, blocks[1]);
     assert!(blocks[1].iter().all(|row| row.0[5..].iter().all(|v| *v == 0.0)));
     // The memory is used again, whatever was in it.
-    let again = PackedWeights::new(&logits[..3], 3, 0.7, Some(PackedWeights::new(&logits, 3, 9.0, None)));
+    let again =
+        PackedWeights::new(&logits[..3], 3, 0.7, PackedWeights::new(&logits, 3, 9.0, None).ok()).unwrap();
     assert_eq!(again.blocks(0).count(), 1);
     assert!(again.rows.iter().all(|row| row.0[1..].iter().all(|v| *v == 0.0)));
 }

@@ -8,6 +8,7 @@ use super::gemm::{multiply, View};
 use super::network::{relu, Layer, Network};
 use crate::error::Error;
 use crate::geometry::{Order, PointTree};
+use crate::machine::memory::zeros;
 use crate::machine::parallel::{for_each_block, for_each_task, SharedRows};
 use crate::machine::progress::{report, Progress};
 
@@ -19,7 +20,7 @@ const CHUNK: usize = 1 << 14;
 /// The logits of the points `x`, row by row: n x m.
 pub(super) fn logits(network: &Network, x: &[f64], progress: &mut Progress<'_>) -> Result<Vec<f32>, Error> {
     let (dim, m) = (network.dim(), network.outputs());
-    let mut logits = vec![0.0; x.len() / dim * m];
+    let mut logits = zeros(x.len() / dim * m)?;
     let chunks = logits.len().div_ceil(CHUNK * m).max(1);
     for (index, (x, logits)) in x.chunks(CHUNK * dim).zip(logits.chunks_mut(CHUNK * m)).enumerate() {
         report(progress, index as f64 / chunks as f64)?;

@@ -1,60 +1,23 @@
 //! The parameters before training: as `torch.nn.Linear` has them, from a seed.
 
-use rand_chacha::rand_core::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-
 use super::network::Layer;
-use crate::machine::memory::filled;
+use crate::machine::random::Random;
 
 /// Frequencies of the random Fourier features, as in the published code.
 const FREQUENCIES: usize = 32;
 
-/// The generator that one seed means on every machine.
-pub(super) struct Random(ChaCha8Rng);
-
 impl Random {
-    pub(super) fn new(seed: u64) -> Random {
-        Random(ChaCha8Rng::seed_from_u64(seed))
-    }
-
-    /// Uniform in [0, 1), with the 24 bits that a single-precision number has.
-    fn unit(&mut self) -> f32 {
-        (self.0.next_u32() >> 8) as f32 / (1u32 << 24) as f32
-    }
-
     /// Weights and biases uniform in `+-1/sqrt(inputs)`.
-    pub(super) fn layer(&mut self, inputs: usize, outputs: usize) -> Layer {
+    pub(crate) fn layer(&mut self, inputs: usize, outputs: usize) -> Layer {
         let bound = 1.0 / (inputs as f32).sqrt();
         Layer { weight: self.uniform(inputs * outputs, bound), bias: self.uniform(outputs, bound) }
     }
 
-    /// The next `count` numbers, uniform in `+-bound`: the generator can begin anywhere, so that each thread draws its own.
-    fn uniform(&mut self, count: usize, bound: f32) -> Vec<f32> {
-        const BLOCK: usize = 1 << 14;
-        let begin = self.0.get_word_pos();
-        self.0.set_word_pos(begin + count as u128);
-        let generator = &self.0;
-        filled(Vec::new(), count, 0.0, BLOCK, |index, block| {
-            let mut random = Random(generator.clone());
-            random.0.set_word_pos(begin + (BLOCK * index) as u128);
-            block.iter_mut().for_each(|value| *value = (2.0 * random.unit() - 1.0) * bound);
-        })
-    }
-
-    /// Puts the numbers in an order of which all are equally likely (Fisher, Yates 1938; Durstenfeld 1964).
-    pub(super) fn shuffle(&mut self, numbers: &mut [usize]) {
-        for last in (1..numbers.len()).rev() {
-            // The product's high half: uniform but for one part in 2^32 / len.
-            let at = (u64::from(self.0.next_u32()) * (last as u64 + 1)) >> 32;
-            numbers.swap(last, at as usize);
-        }
-    }
-
     /// `B` of the Fourier features: 32 x d, normal with deviation `sigma` (Box and Muller 1958).
-    pub(super) fn frequencies(&mut self, dim: usize, sigma: f64) -> Vec<f32> {
+    pub(crate) fn frequencies(&mut self, dim: usize, sigma: f64) -> Vec<f32> {
         let mut normal = || {
-            let radius = (-2.0 * (1.0 - f64::from(self.unit())).ln()).sqrt();
-            radius * (std::f64::consts::TAU * f64::from(self.unit())).cos()
+            let radius = (-2.0 * (1.0 - f64::from(self.unit_single())).ln()).sqrt();
+            radius * (std::f64::consts::TAU * f64::from(self.unit_single())).cos()
         };
         (0..FREQUENCIES * dim).map(|_| (sigma * normal()) as f32).collect()
     }
@@ -81,9 +44,9 @@ mod tests {
         let (mut at_once, mut one_by_one) = (Random::new(3), Random::new(3));
         let layer = at_once.layer(40, 1000);
         for value in layer.weight.iter().chain(&layer.bias) {
-            assert_eq!(*value, (2.0 * one_by_one.unit() - 1.0) * (1.0 / 40f32.sqrt()));
+            assert_eq!(*value, (2.0 * one_by_one.unit_single() - 1.0) * (1.0 / 40f32.sqrt()));
         }
-        assert_eq!(at_once.unit(), one_by_one.unit());
+        assert_eq!(at_once.unit_single(), one_by_one.unit_single());
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! The network and its evaluation.
 
 use super::{dense, features, piecewise};
-use crate::error::{check_points, Error};
+use crate::check::check_points;
+use crate::error::Error;
 use crate::geometry::Frame;
 use crate::geometry::{Order, PointTree, LEAF};
-use crate::machine::memory::in_large_pages;
+use crate::machine::memory::{in_large_pages, zeros};
 use crate::machine::progress::{report, Progress};
 use crate::machine::simd::Simd;
 
@@ -126,7 +127,7 @@ impl Network {
     /// [`Error::Cancelled`], or where the tree's points are of another dimension or normalised by another frame than the
     /// network's.
     pub fn logits_of_tree(&self, tree: &PointTree, progress: &mut Progress<'_>) -> Result<Vec<f32>, Error> {
-        let mut logits = vec![0.0; tree.len() * self.outputs()];
+        let mut logits = zeros(tree.len() * self.outputs())?;
         in_large_pages(&mut logits);
         self.write_logits_of_tree(tree, Order::Given, &mut logits, progress)?;
         Ok(logits)

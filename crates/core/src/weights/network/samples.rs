@@ -1,8 +1,9 @@
 //! Points of a shape that a network is taught with besides the control points: how likely each control point is there.
 
-use super::initialise::Random;
 use super::train::lexicographic_order;
-use crate::error::{check_points, Error};
+use crate::check::check_points;
+use crate::error::Error;
+use crate::machine::random::Random;
 
 /// Points with soft labels.
 #[derive(Clone, Copy, Debug, PartialEq)]

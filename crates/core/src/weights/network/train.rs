@@ -7,13 +7,14 @@
 use std::f64::consts::PI;
 
 use super::features;
-use super::initialise::Random;
 use super::network::{Layer, Network};
 use super::samples::{sorted, Lessons, Samples};
-use crate::error::{check_number, check_points, Error};
+use crate::check::{check_number, check_points};
+use crate::error::Error;
 use crate::geometry::Frame;
 use crate::machine::parallel::on_a_working_thread;
 use crate::machine::progress::{report, Progress};
+use crate::machine::random::Random;
 
 mod trainer;
 use trainer::{Losses, Trainer};

@@ -2,9 +2,9 @@
 
 use serde_json::{Map, Value};
 
-use super::session::{keep, passed_over};
 use super::settings::{object, one_of, share, shared, weights, Keys, PARAMETERS};
 use super::style::{found, line};
+use super::values::{keep, passed_over};
 use crate::control_points::{ControlPoint, ControlPoints};
 use crate::error::Error;
 use crate::session::Session;

@@ -5,11 +5,11 @@ use serde_json::{Map, Value};
 use super::parse::{Document, STAND_IN};
 use super::settings::{object, read_settings};
 use super::style::{found, kind};
-use super::values::vector;
+use super::values::{keep, passed_over, vector};
 use super::{editor, entry, FORMAT};
 use crate::control_points::{ControlPoint, ControlPoints};
 use crate::error::Error;
-use crate::session::{Box, Read, Session};
+use crate::session::{Bounds, Read, Session};
 
 /// What a file of an older version may hold as another program's keys, and means something in this one.
 const NEW_KEYS: [&str; 2] = ["settings", "frame"];
@@ -87,10 +87,6 @@ fn entries(list: &[Value], version: u8, notes: &mut Vec<String>) -> Result<Vec<C
     Ok(points)
 }
 
-pub(super) fn passed_over(key: &str) -> String {
-    format!("the key \"{key}\" means nothing in a file of version 1: it is passed over")
-}
-
 fn take_settings(session: &mut Session, keys: &mut Map<String, Value>) -> Result<(), Error> {
     if let Some(found) = keys.shift_remove("settings") {
         let (settings, rest) =
@@ -103,20 +99,13 @@ fn take_settings(session: &mut Session, keys: &mut Map<String, Value>) -> Result
         let mut corners = object(&found, "frame")?;
         let dim = session.points.dim();
         let [min, max] = ["min", "max"].map(|key| vector(&corners, key, "frame", Some(dim)));
-        let frame = Box::new(min?, max?, dim).map_err(|error| Error::file(error.message))?;
+        let frame = Bounds::new(min?, max?, dim).map_err(|error| Error::file(error.message))?;
         session.frame = Some(frame);
         corners.shift_remove("min");
         corners.shift_remove("max");
         keep(session, "frame", corners);
     }
     Ok(())
-}
-
-/// Keeps what is left of an object, if anything is.
-pub(super) fn keep(session: &mut Session, key: &str, rest: Map<String, Value>) {
-    if !rest.is_empty() {
-        session.others.insert(key.into(), rest.into());
-    }
 }
 
 fn check_surrogates(list: &[ControlPoint]) -> Result<(), Error> {

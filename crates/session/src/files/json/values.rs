@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 use super::parse::STAND_IN;
 use super::style::found;
 use crate::error::Error;
+use crate::session::Session;
 
 /// The most digits of a number: Python reads no more.
 const DIGITS: usize = 4300;
@@ -73,4 +74,15 @@ pub fn text(of: &Map<String, Value>, key: &str, place: &str) -> Result<String, E
             Err(Error::file(format!("{place}.{key}: expected a text that is not empty, found {found}")))
         }
     }
+}
+
+/// Keeps what is left of an object, if anything is.
+pub fn keep(session: &mut Session, key: &str, rest: Map<String, Value>) {
+    if !rest.is_empty() {
+        session.others.insert(key.into(), rest.into());
+    }
+}
+
+pub fn passed_over(key: &str) -> String {
+    format!("the key \"{key}\" means nothing in a file of version 1: it is passed over")
 }

@@ -19,7 +19,10 @@ pub(crate) fn json_text(session: &Session) -> String {
     out += "\n  ]";
     let mut rest = Map::new();
     if session.has_settings || session.settings != Settings::default() {
-        rest.insert("settings".into(), with(settings_value(&session.settings), session.others.get("settings")));
+        rest.insert(
+            "settings".into(),
+            with(settings_value(&session.settings), session.others.get("settings")),
+        );
     }
     if let Some(frame) = &session.frame {
         let corners = json!({"min": numbers(&frame.min), "max": numbers(&frame.max)});

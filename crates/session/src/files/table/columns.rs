@@ -1,5 +1,7 @@
 //! Which column of a table holds what.
 
+use std::collections::HashSet;
+
 use super::header::{known, Known, NAMES};
 use super::number;
 use super::rows::Row;
@@ -30,9 +32,10 @@ impl Columns {
         let titles: Vec<String> = row.cells.iter().map(|title| title.to_lowercase()).collect();
         let (line, found) = (row.line, shown(&row.cells.join(",")));
         let known: Vec<Known> = titles.iter().map(|title| known(title)).collect();
-        for (i, title) in titles.iter().enumerate() {
-            let same = |j: usize| titles[j] == *title || known[i].is_column() && known[i] == known[j];
-            if !title.is_empty() && (0..i).any(same) {
+        let (mut seen, mut meant) = (HashSet::new(), HashSet::new());
+        for (title, known) in titles.iter().zip(&known) {
+            let new = title.is_empty() || seen.insert(title);
+            if !new || *known != Known::Other && !meant.insert(known) {
                 return Err(Error::file(format!("line {line}: the column {} is there twice", quoted(title))));
             }
         }

@@ -1,7 +1,8 @@
 //! What the titles of columns mean, as landmark tools and people write them.
 
 /// What the column of the names is called, the likeliest first.
-pub const NAMES: [&str; 6] = ["name", "label", "landmark", "point", "id", "index"];
+pub const NAMES: [&str; 9] =
+    ["name", "label", "landmark", "point", "landmarkname", "pointname", "pointid", "id", "index"];
 /// What positions are called before or after the axis; with nothing, too.
 const SOURCES: [&str; 7] = ["source", "src", "position", "pos", "from", "start", "rest"];
 /// What targets are called. No single letters: `qx` is a quaternion's, `tx` a translation's.
@@ -9,7 +10,7 @@ const TARGETS: [&str; 7] = ["target", "tgt", "destination", "dest", "dst", "to",
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// What a column holds.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Known {
     /// Names.
     Name(&'static str),
@@ -26,24 +27,18 @@ pub enum Known {
     Other,
 }
 
-impl Known {
-    /// Whether it is read.
-    pub fn is_column(self) -> bool {
-        self != Known::Other
-    }
-}
-
 /// What a title in small letters means: `x`, `target_x`, `Target X (mm)`, `x_target`, `targetX`, `destination.x`.
 pub fn known(title: &str) -> Known {
     // A unit in brackets.
     let title = title.split(['(', '[']).next().unwrap_or_default().trim();
-    if let Some(name) = NAMES.iter().find(|name| **name == title) {
+    let between = [' ', '_', '.', '-', ':'];
+    let whole = title.replace(between, "");
+    if let Some(name) = NAMES.iter().find(|name| **name == whole) {
         return Known::Name(name);
     }
     if let Some(axis) = AXES.iter().position(|axis| *axis == title) {
         return Known::Axis { target: false, prefix: "", axis };
     }
-    let between = [' ', '_', '.', '-', ':'];
     for (target, prefixes) in [(false, SOURCES), (true, TARGETS)] {
         for prefix in prefixes {
             for (axis, letter) in AXES.iter().enumerate() {

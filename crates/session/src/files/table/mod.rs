@@ -16,6 +16,10 @@ use crate::text::{quoted, shown};
 /// Reads a table. Unknown columns are passed over.
 pub fn read(text: &str) -> Result<Read, Error> {
     let mut rows = cells(text, separator(text))?;
+    // Excel's own word for what separates the cells.
+    if rows.first().is_some_and(|row| row.cells[0].eq_ignore_ascii_case("sep=")) {
+        rows.remove(0);
+    }
     // CloudCompare and NumPy write what the columns are as a comment.
     let comments = rows.iter().take_while(|row| row.is_comment() && !Columns::is_data(row)).count();
     let mut header = None;
@@ -48,10 +52,11 @@ pub fn read(text: &str) -> Result<Read, Error> {
 
 fn push(landmarks: &mut Landmarks, row: &Row, columns: &Columns, comma: bool) -> Result<(), Error> {
     let (line, width) = (row.line, columns.titles.len());
+    let s = if width == 1 { "" } else { "s" };
     if row.cells.len() > width {
         let (as_in, found) = (columns.whose, row.cells.len());
         return Err(Error::file(format!(
-            "line {line}: expected {width} columns as in the {as_in}, found {found}"
+            "line {line}: expected {width} column{s} as in the {as_in}, found {found}"
         )));
     }
     let cell = |at: usize| row.cells.get(at).map_or("", |cell| &**cell);

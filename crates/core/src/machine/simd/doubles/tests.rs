@@ -1,6 +1,6 @@
 //! Against plain arithmetic, on every instruction set of this machine.
 
-use super::super::{multiversion, Lanes};
+use super::super::{multiversion, Lanes, Simd};
 use super::*;
 
 /// Every operation, on the first lanes of `a` and `b`.
@@ -51,7 +51,7 @@ multiversion! { fn points(from: &[f64], to: &mut [f64]) -> (usize, [[f64; WIDEST
 fn every_instruction_set_of_this_machine_gives_the_same_answers() {
     let a: [f64; WIDEST] = std::array::from_fn(|i| 1.5 - (i as f64 * 0.7).cos());
     let b: [f64; WIDEST] = std::array::from_fn(|i| (i as f64 * 1.3 + 1.0).cos() + 1.2);
-    for simd in crate::machine::simd::loops::all() {
+    for simd in Simd::all() {
         let (width, results) = all(simd, &a, &b);
         for i in 0..width {
             let (a, b) = (a[i], b[i]);
@@ -80,7 +80,7 @@ fn every_instruction_set_of_this_machine_gives_the_same_answers() {
 #[test]
 fn points_are_taken_apart_and_put_together() {
     let from: [f64; 24] = std::array::from_fn(|i| i as f64);
-    for simd in crate::machine::simd::loops::all() {
+    for simd in Simd::all() {
         let mut to = [0.0; 24];
         let (width, lanes) = points(simd, &from, &mut to);
         for lane in 0..width {

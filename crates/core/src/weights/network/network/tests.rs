@@ -1,7 +1,7 @@
 //! Evaluation against a naive version in double precision, sizes, refusals.
 
-use super::super::initialise::Random;
 use super::*;
+use crate::machine::random::Random;
 use proptest::prelude::*;
 
 fn network(dim: usize, width: usize, m: usize, sigma: Option<f64>) -> Network {

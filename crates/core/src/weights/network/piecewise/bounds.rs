@@ -68,8 +68,8 @@ pub(super) fn classify<L: Lanes>(lower: L, upper: L) -> [u32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::machine::random::Random;
     use crate::machine::simd::Portable;
-    use crate::weights::network::initialise::Random;
 
     #[test]
     fn points_bound_a_map_more_closely_than_their_box_and_leave_none_of_them_out() {

@@ -8,7 +8,7 @@ use super::rows::{add_columns, Rows};
 use super::whole::{Prepared, Whole, PACK};
 use crate::error::Error;
 use crate::geometry::{Node, Order, PointTree, LEAF, LEAF_BLOCKS};
-use crate::machine::parallel::{for_each_block, for_each_task, threads, SharedRows};
+use crate::machine::parallel::{briefly, for_each_block, for_each_task, threads, SharedRows};
 use crate::machine::progress::Progress;
 use crate::machine::simd::{Aligned, Simd, WIDTH};
 use crate::weights::network::{dense, network::Network};
@@ -200,11 +200,13 @@ impl Walk<'_> {
     }
 
     fn workspace(&self) -> Workspace {
-        self.whole.workspaces.lock().expect("no task panics").pop().unwrap_or_default()
+        briefly(&self.whole.workspaces).and_then(|mut kept| kept.pop()).unwrap_or_default()
     }
 
     fn keep(&self, workspace: Workspace) {
-        self.whole.workspaces.lock().expect("no task panics").push(workspace);
+        if let Some(mut kept) = briefly(&self.whole.workspaces) {
+            kept.push(workspace);
+        }
     }
 
     /// Makes a node from the one above it, `parent`, and evaluates its points.

@@ -1,0 +1,42 @@
+"""Several shapes as one: what a map of all of them is fitted to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from neuralmls.arrays import as_points, as_triangles, box_around
+from neuralmls.errors import ArgumentError
+from neuralmls.shape import Shape
+
+
+def box_of(shape: Shape | ArrayLike, dimension: int) -> NDArray[np.float64]:
+    """Return the box of a shape, (2, d).
+
+    Raises
+    ------
+    ArgumentError
+        There are no points, or they are of another dimension.
+    """
+    if isinstance(shape, Shape):
+        return shape.bounds
+    x = as_points("shapes", shape, dimension)
+    if not len(x):
+        raise ArgumentError("shapes: expected at least one point, found none")
+    return box_around(x)
+
+
+def together(
+    shapes: Iterable[Shape | ArrayLike], dimension: int
+) -> tuple[NDArray[np.float64], NDArray[np.int64] | None]:
+    """The points and triangles of several shapes as those of one."""
+    points, triangles, count = [], [], 0
+    for shape in shapes:
+        x = shape.positions if isinstance(shape, Shape) else as_points("shapes", shape, dimension)
+        if isinstance(shape, Shape) and shape.faces is not None:
+            triangles.append(as_triangles(shape.faces, len(x)) + count)
+        points.append(x)
+        count += len(x)
+    return np.concatenate(points), np.concatenate(triangles) if triangles else None
