@@ -159,9 +159,8 @@ def map() -> dict[str, bytes]:
     made = {}
     for kind, (arrays, parameters) in kinds.items():
         settings = {"weights": {"kind": kind, **parameters}}
-        session = json.dumps(document | {"settings": settings})
-        metadata = {"format": "neuralmls-map", "version": "1", "weights": kind, "session": session}
-        header, data = {"__metadata__": metadata}, b""
+        said = {"version": 1, "weights": kind, "session": document | {"settings": settings}}
+        header, data = {"__metadata__": {"neuralmls-map": json.dumps(said)}}, b""
         for name, (dtype, shape, numbers) in arrays.items():
             packed = struct.pack(f"<{len(numbers)}{'d' if dtype == 'F64' else 'f'}", *numbers)
             header[name] = {"dtype": dtype, "shape": shape, "data_offsets": [len(data), len(data) + len(packed)]}

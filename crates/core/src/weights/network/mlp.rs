@@ -39,10 +39,11 @@ impl Network {
     }
 
     /// The same network with logits `by` times as large.
-    pub(crate) fn sharpened(mut self, by: f32) -> Network {
-        let Layer { weight, bias } = &mut self.layers[2];
+    pub(crate) fn sharpened(self, by: f32) -> Network {
+        let mut parameters = self.parameters;
+        let Layer { weight, bias } = &mut parameters.layers[2];
         weight.iter_mut().chain(bias).for_each(|parameter| *parameter *= by);
-        Network { prepared: piecewise::Prepared::default(), ..self }
+        Network::from(parameters)
     }
 
     /// Coordinates a point.
