@@ -147,15 +147,22 @@ def npy() -> dict[str, bytes]:
 
 
 def map() -> dict[str, bytes]:
-    """Saved maps: of inverse-distance weights, and of a network of two neurons a layer (crates/session/src/map_file.rs)."""
+    """Saved maps: of inverse-distance weights, and of a network of two neurons a layer (session/src/map_file.rs)."""
     points = [{"name": name, "position": [x, 0], "target": [x, 1]} for name, x in (("a", 0), ("b", 1))]
     document = {"format": "neuralmls-control-points", "version": 2, "control_points": points}
-    frame = {"control_points": ("F64", [2, 2], [0, 0, 1, 0]), "centre": ("F64", [2], [0.5, 0]), "half": ("F64", [1], [0.5])}
+    frame = {
+        "control_points": ("F64", [2, 2], [0, 0, 1, 0]),
+        "centre": ("F64", [2], [0.5, 0]),
+        "half": ("F64", [1], [0.5]),
+    }
     classic = {"alpha": ("F64", [1], [1]), "epsilon": ("F64", [1], [0])}
     network = {"losses": ("F64", [1], [0.5]), "loss": ("F64", [1], [0.25]), "frequencies": ("F32", [0, 2], [])}
     for i in range(3):
         network |= {f"weight{i}": ("F32", [2, 2], [1, -1, 0.5, 2]), f"bias{i}": ("F32", [2], [0, 0.5])}
-    kinds = {"inverse-distance": (frame | classic, {"alpha": 1, "epsilon": 0}), "neural": (frame | network, {"width": 2})}
+    kinds = {
+        "inverse-distance": (frame | classic, {"alpha": 1, "epsilon": 0}),
+        "neural": (frame | network, {"width": 2}),
+    }
     made = {}
     for kind, (arrays, parameters) in kinds.items():
         settings = {"weights": {"kind": kind, **parameters}}

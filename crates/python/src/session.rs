@@ -157,12 +157,6 @@ impl Map {
         self.0.with(session.0.clone()).map(Map).map_err(raised)
     }
 
-    /// The effective targets, and how far each control point stays from where it was to go.
-    fn aim<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>)> {
-        let aim = py.detach(|| self.0.aim()).map_err(raised)?;
-        Ok((table(py, aim.targets, self.0.session().points.dim())?, PyArray1::from_vec(py, aim.misses)))
-    }
-
     /// Where bound points go; into `out` where it is given.
     fn deform<'py>(
         &self,

@@ -194,7 +194,7 @@ fn network(arrays: &Arrays<'_>, m: usize, dim: usize, frame: Frame) -> Result<Ne
         }
         layers.push(Layer { weight, bias });
     }
-    let layers: [Layer; 3] = layers.try_into().ok().expect("three layers");
+    let layers: [Layer; 3] = layers.try_into().expect("three layers");
     Network::new(dim, frame, frequencies, layers).map_err(|error| broken(&error.to_string()))
 }
 
