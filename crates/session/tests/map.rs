@@ -13,6 +13,7 @@ fn session(weights: WeightsSettings) -> Session {
         CORNERS.iter().enumerate().map(|(i, at)| ControlPoint::new(format!("p{}", i + 1), at.to_vec()));
     let mut session = Session::new(ControlPoints::new(3, list.collect()).unwrap());
     session.settings.weights = weights;
+    session.has_settings = true;
     session
 }
 
