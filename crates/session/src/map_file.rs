@@ -17,6 +17,7 @@ use std::collections::HashMap;
 
 use neuralmls_core::{Frame, InverseDistance, Layer, Network, Trained, Weights};
 use safetensors::tensor::{serialize, Dtype, SafeTensors, View};
+use serde_json::Value;
 
 use crate::{read, Error, Map};
 
@@ -122,7 +123,21 @@ fn write(weights: &Weights, session: Option<String>) -> Vec<u8> {
             .into();
     metadata.extend(session.map(|session| ("session".to_string(), session)));
     let views = arrays.iter().map(|(name, array)| (name.as_str(), array));
-    serialize(views, Some(metadata)).expect("arrays whose shapes fit their bytes")
+    in_order(serialize(views, Some(metadata)).expect("arrays whose shapes fit their bytes"))
+}
+
+/// The same file with its metadata in order: the library keeps them in a hash map, whose order is another one each time.
+fn in_order(mut file: Vec<u8>) -> Vec<u8> {
+    let (length, rest) = file.split_first_chunk_mut::<8>().expect("the length of the header");
+    let header = &mut rest[..u64::from_le_bytes(*length) as usize];
+    let mut said: serde_json::Map<String, Value> = serde_json::from_slice(header).expect("a header of JSON");
+    if let Some(Value::Object(metadata)) = said.get_mut("__metadata__") {
+        metadata.sort_keys();
+    }
+    let text = serde_json::to_vec(&said).expect("what was read");
+    header.fill(b' ');
+    header[..text.len()].copy_from_slice(&text);
+    file
 }
 
 fn parse(bytes: &[u8]) -> Result<(Weights, Option<String>), Error> {
@@ -163,6 +178,9 @@ fn parse(bytes: &[u8]) -> Result<(Weights, Option<String>), Error> {
                 loss: arrays.number("loss")?,
                 control_points: p,
             };
+            if trained.losses.iter().chain([&trained.loss]).any(|loss| !loss.is_finite()) {
+                return Err(broken("losses: expected finite numbers"));
+            }
             if kind == "neural" {
                 Weights::Neural(trained)
             } else {
