@@ -4,10 +4,10 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 
-seconds=${1:?"usage: fuzz/run.sh SECONDS [obj|ply|off|stl|gltf|glb|table|npy|session]..."}
+seconds=${1:?"usage: fuzz/run.sh SECONDS [obj|ply|off|stl|gltf|glb|table|npy|session|map]..."}
 shift
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(obj ply off stl gltf glb table npy session)
+[ ${#targets[@]} -gt 0 ] || targets=(obj ply off stl gltf glb table npy session map)
 
 # Coverage counters, as cargo-fuzz sets them. With --target they do not reach build scripts.
 host=$(rustc -vV | sed -n 's/^host: //p')

@@ -62,7 +62,8 @@ def ply() -> dict[str, bytes]:
         "ascii": header("ascii") + ascii_rows.encode(),
         "little": header("binary_little_endian") + binary("<"),
         "big": header("binary_big_endian") + binary(">"),
-        "double": b"ply\nformat ascii 1.0\nCreated by hand\nelement vertex 1\nproperty double x\nproperty double y\nproperty double z\n"
+        "double": b"ply\nformat ascii 1.0\nCreated by hand\nelement vertex 1\n"
+        b"property double x\nproperty double y\nproperty double z\n"
         b"property list uchar float tags\nend_header\n1 2 3 2 0.5 0.25\n",
     }
 
@@ -145,6 +146,30 @@ def npy() -> dict[str, bytes]:
     }
 
 
+def map() -> dict[str, bytes]:
+    """Saved maps: of inverse-distance weights, and of a network of two neurons a layer (crates/session/src/map_file.rs)."""
+    points = [{"name": name, "position": [x, 0], "target": [x, 1]} for name, x in (("a", 0), ("b", 1))]
+    document = {"format": "neuralmls-control-points", "version": 2, "control_points": points}
+    frame = {"control_points": ("F64", [2, 2], [0, 0, 1, 0]), "centre": ("F64", [2], [0.5, 0]), "half": ("F64", [1], [0.5])}
+    classic = {"alpha": ("F64", [1], [1]), "epsilon": ("F64", [1], [0])}
+    network = {"losses": ("F64", [1], [0.5]), "loss": ("F64", [1], [0.25]), "frequencies": ("F32", [0, 2], [])}
+    for i in range(3):
+        network |= {f"weight{i}": ("F32", [2, 2], [1, -1, 0.5, 2]), f"bias{i}": ("F32", [2], [0, 0.5])}
+    kinds = {"inverse-distance": (frame | classic, {"alpha": 1, "epsilon": 0}), "neural": (frame | network, {"width": 2})}
+    made = {}
+    for kind, (arrays, parameters) in kinds.items():
+        settings = {"weights": {"kind": kind, **parameters}}
+        said = {"version": 1, "weights": kind, "session": document | {"settings": settings}}
+        header, data = {"__metadata__": {"neuralmls-map": json.dumps(said)}}, b""
+        for name, (dtype, shape, numbers) in arrays.items():
+            packed = struct.pack(f"<{len(numbers)}{'d' if dtype == 'F64' else 'f'}", *numbers)
+            header[name] = {"dtype": dtype, "shape": shape, "data_offsets": [len(data), len(data) + len(packed)]}
+            data += packed
+        text = json.dumps(header).encode()
+        made[f"{kind}.map"] = struct.pack("<Q", len(text)) + text + data
+    return made
+
+
 def session() -> dict[str, bytes]:
     """The files of tests/sessions."""
     files = [path for path in SESSIONS.glob("*/*") if path.stat().st_size < 4096]
@@ -152,7 +177,7 @@ def session() -> dict[str, bytes]:
 
 
 def main(folder: Path) -> None:
-    for make in (obj, off, table, ply, stl, gltf, glb, npy, session):
+    for make in (obj, off, table, ply, stl, gltf, glb, npy, session, map):
         target = folder / make.__name__
         target.mkdir(parents=True, exist_ok=True)
         for name, content in make().items():

@@ -4,7 +4,7 @@ Control points of the paper's shapes, and 40 spread over each, are dragged in st
 past each other, bent, mirrored, each on its own way. Where a drag moves the shape fastest, the step is halved again and
 again; what is left then is a jump. Soft, with the best aim that is found (`ExactHandles.aim`), and with the careful one
 (`ExactHandles.aim_carefully`), where control points own a quarter of their places. Prints a table of
-docs/beyond-the-paper.md.
+docs/notes/beyond-the-paper.md.
 """
 
 from __future__ import annotations

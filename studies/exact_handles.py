@@ -2,7 +2,7 @@
 
 FOLDER has the paper's chairs and airplanes in `shapenet/` (they are not ours to give). Every case is deformed twice
 with the same weights, soft and exact, also where control points own less and less of their places: by that the limit of
-`ExactHandles.aim_carefully` was chosen (crates/core/src/exact.rs). Prints the tables of docs/beyond-the-paper.md; its
+`ExactHandles.aim_carefully` was chosen (crates/core/src/aim). Prints the tables of docs/notes/beyond-the-paper.md; its
 pictures are of our own sample shapes.
 """
 

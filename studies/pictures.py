@@ -1,4 +1,4 @@
-"""The pictures of docs/beyond-the-paper.md: `python studies/pictures.py FOLDER`."""
+"""The pictures of docs/notes/beyond-the-paper.md: `python studies/pictures.py FOLDER`."""
 
 from __future__ import annotations
 

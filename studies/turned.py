@@ -1,7 +1,7 @@
 """How much a turned control point counts: `python -m studies.turned`.
 
 One control point of the sample chair is turned by 40 degrees, all stay where they are. For `u_i` (a power of the
-weight) and `rho_i` (times the distance to the nearest control point) of crates/core/src/mls/turned.rs: the angle that
+weight) and `rho_i` (times the distance to the nearest control point) of crates/core/src/mls/oriented.rs: the angle that
 is missing at the turned control point, and the largest angle at the places of the others; both should be small.
 """
 

@@ -1,4 +1,4 @@
-"""The pictures of turned control points in docs/beyond-the-paper.md: `python studies/turned_pictures.py FOLDER`."""
+"""The pictures of turned control points in docs/notes/beyond-the-paper.md: `python studies/turned_pictures.py FOLDER`."""
 
 from __future__ import annotations
 

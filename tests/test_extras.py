@@ -24,7 +24,7 @@ def test_shape_aware_weights_without_scipy(monkeypatch):
 
 
 def test_both_ways_are_named():
-    assert extra("figures") == "pip install 'neuralmls[figures]' (in a checkout: pip install '.[figures]')"
+    assert extra("figures") == "pip install 'neuralmls[figures]' (in a checkout: pip install --editable '.[figures]')"
 
 
 def test_every_extra_and_package_that_a_message_names_is_there():

@@ -125,29 +125,37 @@ def test_numbers_that_are_not_finite_are_refused(good, name, value, tmp_path):
     refused(tmp_path, joined(header, arrays[:begin] + number + arrays[begin + len(number) :]))
 
 
+def said(data: bytes, **entries: Any) -> bytes:
+    """The file with other metadata."""
+    header, arrays = parts(data)
+    metadata = json.loads(header["__metadata__"]["neuralmls-map"])
+    header["__metadata__"]["neuralmls-map"] = json.dumps(metadata | entries)
+    return joined(header, arrays)
+
+
 @pytest.mark.parametrize(
     "metadata",
-    [
-        {"format": "something else"},
-        {"version": "2"},
-        {"weights": "magic"},
-        {"weights": "inverse-distance"},
-    ],
+    [{"version": 2}, {"version": "1"}, {"weights": "magic"}, {"weights": "inverse-distance"}, {"weights": 1}],
 )
 def test_metadata_of_something_else_is_refused(good, metadata, tmp_path):
-    refused(tmp_path, changed(good, "__metadata__", **metadata))
+    refused(tmp_path, said(good, **metadata))
+
+
+@pytest.mark.parametrize("metadata", [{}, {"format": "pt"}, {"neuralmls-map": ""}, {"neuralmls-map": "[1]"}])
+def test_a_file_of_another_program_is_refused(good, metadata, tmp_path):
+    header, arrays = parts(good)
+    refused(tmp_path, joined({**header, "__metadata__": metadata}, arrays))
 
 
 def test_a_session_that_does_not_belong_to_the_weights_is_refused(good, tmp_path):
-    header, arrays = parts(good)
-    session = json.loads(header["__metadata__"]["session"])
+    header, _ = parts(good)
+    session = json.loads(header["__metadata__"]["neuralmls-map"])["session"]
     moved = json.loads(json.dumps(session))
     moved["control_points"][0]["position"] = [5, 5, 5]
     other = json.loads(json.dumps(session))
     other["settings"]["weights"] = {"kind": "inverse-distance"}
-    for text in ("", "{}", "nothing", json.dumps(moved), json.dumps(other)):
-        header["__metadata__"]["session"] = text
-        (tmp_path / "bad.map").write_bytes(joined(header, arrays))
+    for wrong in (None, "", {}, [], moved, other):
+        (tmp_path / "bad.map").write_bytes(said(good, session=wrong))
         with pytest.raises(nm.FileError, match=r"bad\.map: "):
             nm.Map.load(tmp_path / "bad.map")
 

@@ -115,3 +115,19 @@ fn check_sentence(error: &Error) {
 fn check_words(sentence: &str) {
     assert!(!sentence.is_empty() && sentence.len() < 1000 && !sentence.contains('\n'), "{sentence}");
 }
+
+/// Reads the bytes as a saved map, which is then the same map when it is saved again, and moves points.
+pub fn check_map(bytes: &[u8]) {
+    match neuralmls_session::Map::from_bytes(bytes) {
+        Ok(map) => {
+            let again = neuralmls_session::Map::from_bytes(&map.to_bytes()).expect("what was saved is read");
+            assert!(again.session() == map.session() && again.weights() == map.weights());
+            let p = map.session().points.sources();
+            // Absurd numbers may be refused, in words.
+            if let Ok(moved) = map.at(&p, &mut |_| true) {
+                assert_eq!(moved.len(), p.len());
+            }
+        }
+        Err(error) => assert!(!error.message.is_empty() && !error.message.contains('\n')),
+    }
+}

@@ -1,7 +1,7 @@
 //! Honest advice: where a deformation is likely bad, and which setting would help.
 //!
 //! The thresholds were set on what people did to the chairs and airplanes of the paper's user study, none of
-//! which looks torn: each lies beyond what those cases reach (studies/advice_thresholds.py, docs/beyond-the-paper.md).
+//! which looks torn: each lies beyond what those cases reach (studies/advice_thresholds.py, docs/notes/beyond-the-paper.md).
 
 use crate::aim::greatest;
 use crate::deformer::Pose;

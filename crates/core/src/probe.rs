@@ -1,4 +1,4 @@
-//! A deformation looked at in places all over a shape.
+//! A deformation looked at in places (sample points) all over a shape.
 //!
 //! By its true Jacobian `J` there (central differences; the local map `M` leaves out how the weights change).
 

@@ -129,8 +129,15 @@ impl Deformer {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Deformed<'py>> {
         let (n, d) = (self.inner.len(), self.dim);
-        let positions = out.unwrap_or_else(|| PyArray2::zeros(py, [n, d], false));
-        let maps = maps.then(|| PyArray3::zeros(py, [n, d, d], false));
+        // By NumPy's own function, which raises MemoryError where there is too little.
+        let zeros = || py.import("numpy")?.getattr("zeros");
+        let positions = match out {
+            Some(out) => out,
+            None => zeros()?.call1(((n, d),))?.cast_into::<PyArray2<f64>>()?,
+        };
+        let maps =
+            maps.then(|| zeros()?.call1(((n, d, d),))?.cast_into::<PyArray3<f64>>().map_err(PyErr::from));
+        let maps = maps.transpose()?;
         {
             let taken = |_| argument("out: another call reads or writes this array at the same time");
             let mut y = positions.try_readwrite().map_err(taken)?;

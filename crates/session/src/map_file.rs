@@ -10,19 +10,20 @@
 //! | `losses`, `loss` | f64 (steps), (1) | networks |
 //! | `alpha`, `epsilon` | f64 (1) | inverse distance |
 //!
-//! Metadata: `format`, `version`, `weights` (their kind), and `session`, a session file; a file of weights alone has none.
+//! Its one entry of metadata, `neuralmls-map`, is JSON: `version`, `weights` (their kind), and `session`, a session file; a file of weights alone
+//! has none. (One entry, since several would be written in any order, and the same map is to be the same bytes.)
 
 use std::borrow::Cow;
 use std::collections::HashMap;
 
 use neuralmls_core::{Frame, InverseDistance, Layer, Network, Trained, Weights};
 use safetensors::tensor::{serialize, Dtype, SafeTensors, View};
-use serde_json::Value;
+use serde_json::{json, Value};
 
 use crate::{read, Error, Map};
 
-const FORMAT: &str = "neuralmls-map";
-const VERSION: &str = "1";
+const METADATA: &str = "neuralmls-map";
+const VERSION: u64 = 1;
 
 impl Map {
     /// The map as a file.
@@ -117,41 +118,26 @@ fn write(weights: &Weights, session: Option<String>) -> Vec<u8> {
             arrays.push(("epsilon".into(), Array::doubles(&[1], &[function.epsilon()])));
         }
     }
-    let mut metadata: HashMap<String, String> =
-        [("format", FORMAT), ("version", VERSION), ("weights", weights.kind())]
-            .map(|(key, value)| (key.to_string(), value.to_string()))
-            .into();
-    metadata.extend(session.map(|session| ("session".to_string(), session)));
-    let views = arrays.iter().map(|(name, array)| (name.as_str(), array));
-    in_order(serialize(views, Some(metadata)).expect("arrays whose shapes fit their bytes"))
-}
-
-/// The same file with its metadata in order: the library keeps them in a hash map, whose order is another one each time.
-fn in_order(mut file: Vec<u8>) -> Vec<u8> {
-    let (length, rest) = file.split_first_chunk_mut::<8>().expect("the length of the header");
-    let header = &mut rest[..u64::from_le_bytes(*length) as usize];
-    let mut said: serde_json::Map<String, Value> = serde_json::from_slice(header).expect("a header of JSON");
-    if let Some(Value::Object(metadata)) = said.get_mut("__metadata__") {
-        metadata.sort_keys();
+    let mut said = json!({"version": VERSION, "weights": weights.kind()});
+    if let Some(session) = session {
+        said["session"] = serde_json::from_str(&session).expect("a session is written as JSON");
     }
-    let text = serde_json::to_vec(&said).expect("what was read");
-    header.fill(b' ');
-    header[..text.len()].copy_from_slice(&text);
-    file
+    let metadata = HashMap::from([(METADATA.to_string(), said.to_string())]);
+    let views = arrays.iter().map(|(name, array)| (name.as_str(), array));
+    serialize(views, Some(metadata)).expect("arrays whose shapes fit their bytes")
 }
 
 fn parse(bytes: &[u8]) -> Result<(Weights, Option<String>), Error> {
     let unread = |error: safetensors::SafeTensorError| broken(&error.to_string());
     let (_, head) = SafeTensors::read_metadata(bytes).map_err(unread)?;
     let arrays = Arrays(SafeTensors::deserialize(bytes).map_err(unread)?);
-    let metadata = head.metadata().as_ref();
-    let said = |key: &str| metadata.and_then(|said| said.get(key)).map(String::as_str);
-    if said("format") != Some(FORMAT) {
-        return Err(broken("its metadata has no format neuralmls-map"));
-    }
-    if said("version") != Some(VERSION) {
-        let found = said("version").unwrap_or("none");
-        return Err(broken(&format!("version: expected {VERSION}, found {}", crate::text::shown(found))));
+    let metadata = head.metadata().as_ref().and_then(|metadata| metadata.get(METADATA));
+    let said: Value = metadata
+        .and_then(|text| serde_json::from_str(text).ok())
+        .ok_or_else(|| broken("its metadata has no neuralmls-map"))?;
+    if said["version"].as_u64() != Some(VERSION) {
+        let found = crate::text::shown(&said["version"].to_string());
+        return Err(broken(&format!("version: expected {VERSION}, found {found}")));
     }
     let shape = arrays.shape("control_points", 2)?;
     let (m, dim) = (shape[0], shape[1]);
@@ -170,7 +156,7 @@ fn parse(bytes: &[u8]) -> Result<(Weights, Option<String>), Error> {
         return Err(broken("expected a finite frame with a size above 0"));
     }
     let refused = |error: neuralmls_core::Error| broken(&error.to_string());
-    let weights = match said("weights") {
+    let weights = match said["weights"].as_str() {
         Some(kind @ ("neural" | "shape-aware")) => {
             let trained = Trained {
                 network: network(&arrays, m, dim, frame)?,
@@ -193,7 +179,7 @@ fn parse(bytes: &[u8]) -> Result<(Weights, Option<String>), Error> {
         }
         _ => return Err(broken("weights: expected neural, shape-aware or inverse-distance")),
     };
-    Ok((weights, said("session").map(str::to_string)))
+    Ok((weights, said.get("session").map(Value::to_string)))
 }
 
 fn network(arrays: &Arrays<'_>, m: usize, dim: usize, frame: Frame) -> Result<Network, Error> {

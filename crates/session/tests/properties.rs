@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::fs;
 use std::path::PathBuf;
 
-use neuralmls_session::session::Box;
+use neuralmls_session::Bounds;
 use neuralmls_session::{
     join, read, ControlPoint, ControlPoints, HandlesSetting, Orientation, Session, Settings, Transform,
     WeightsSettings,
@@ -126,7 +126,7 @@ fn sessions() -> impl Strategy<Value = Session> {
             move |(points, settings, frame, others)| {
                 let frame = frame.map(|(min, side)| {
                     let max = min.iter().map(|c| c + side).collect();
-                    Box::new(min, max, dim).unwrap()
+                    Bounds::new(min, max, dim).unwrap()
                 });
                 let has_settings = settings.is_some();
                 Session { points, settings: settings.unwrap_or_default(), has_settings, frame, others }

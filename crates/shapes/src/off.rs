@@ -169,12 +169,13 @@ impl<'a, 'l, L: Iterator<Item = Line<'a>>> Row<'a, 'l, L> {
 }
 
 /// Three numbers and their places in the file.
+#[inline]
 fn three<'a, L: Iterator<Item = Line<'a>>>(
     row: &mut Row<'a, '_, L>,
-    what: &str,
+    (what, short): (&str, &str),
 ) -> Result<[(Range<usize>, f64); 3], Error> {
     let mut next = || {
-        let (word, range) = row.word().ok_or_else(|| row.short(&of_three(what)))?;
+        let (word, range) = row.word().ok_or_else(|| row.short(short))?;
         let value = number::parse(word).ok_or_else(|| {
             let otherwise =
                 || format!("expected {what}, found {}, which is not a finite number", quote(word));
@@ -185,14 +186,11 @@ fn three<'a, L: Iterator<Item = Line<'a>>>(
     Ok([next()?, next()?, next()?])
 }
 
-fn of_three(what: &str) -> String {
-    format!("{what} of three numbers, found")
-}
-
 /// The position of a vertex, and its normal where they have one.
 type Vertex = ([(Range<usize>, f64); 3], Option<[(Range<usize>, f64); 3]>);
 
 /// Reads the next vertex; `None` at the end of the file.
+#[inline]
 fn read_vertex<'a>(
     lines: &mut impl Iterator<Item = Line<'a>>,
     normals: bool,
@@ -200,12 +198,13 @@ fn read_vertex<'a>(
     let Some(mut row) = Row::next(lines) else { return Ok(None) };
     let position = three(&mut row, POSITION)?;
     let normal = normals.then(|| three(&mut row, NORMAL)).transpose()?;
-    row.has_more(&of_three(if normals { NORMAL } else { POSITION }))?;
+    row.has_more(if normals { NORMAL.1 } else { POSITION.1 })?;
     Ok(Some((position, normal)))
 }
 
-const POSITION: &str = "a position";
-const NORMAL: &str = "a normal";
+/// What a word should be, and what its row should hold.
+const POSITION: (&str, &str) = ("a position", "a position of three numbers, found");
+const NORMAL: (&str, &str) = ("a normal", "a normal of three numbers, found");
 
 pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
     let mut lines = Lines::new(source).filter_map(content);
@@ -255,15 +254,16 @@ pub(crate) fn read(source: &[u8]) -> Result<Parsed, Error> {
 }
 
 /// Adds a face's triangles and returns its number of corners, and whether it has a colour.
+#[inline]
 fn read_face<'a>(
     mut row: Row<'a, '_, impl Iterator<Item = Line<'a>>>,
     vertices: usize,
     triangles: &mut Vec<[u32; 3]>,
 ) -> Result<(usize, bool), Error> {
     const EXPECTED: &str = "a face as its number of corners and their indices, found";
-    let short = format!("{EXPECTED} the end of the line after");
+    const SHORT: &str = "a face as its number of corners and their indices, found the end of the line after";
     let next = |row: &mut Row<'a, '_, _>| {
-        let (word, _) = row.word().ok_or_else(|| row.short(&short))?;
+        let (word, _) = row.word().ok_or_else(|| row.short(SHORT))?;
         let wrong = || Error::at_line(row.line.number, format!("expected {EXPECTED} {}", quote(word)));
         whole(word).ok_or_else(wrong)
     };
@@ -272,7 +272,7 @@ fn read_face<'a>(
     for corner in 0..corners {
         let index = next(&mut row)?;
         if index >= vertices as u64 && row.goes_on() {
-            return Err(row.short(&short));
+            return Err(row.short(SHORT));
         }
         if index >= vertices as u64 {
             return Err(Error::at_line(
@@ -288,7 +288,7 @@ fn read_face<'a>(
         }
         previous = index;
     }
-    Ok((corners as usize, row.has_more(&short)?))
+    Ok((corners as usize, row.has_more(SHORT)?))
 }
 
 /// How to write it: the vertex lines are found again.

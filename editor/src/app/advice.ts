@@ -44,7 +44,11 @@ export class Advice {
       const found = await this.#core.advise(bound);
       if (session !== this.#history.session || fit !== this.#store.value.fit) return; // asked anew already
       const ids = session.points.map(({ id }) => id);
-      this.#store.set({ advice: found.map((one) => ({ ...one, ids: one.control_points.map((i) => ids[i]) })) });
+      // Of control points that do not arrive the report tells already, beside the handles.
+      const { report } = this.#store.value;
+      const told = report !== null && (report.soft !== null || report.warnings.length > 0);
+      const shown = found.filter(({ kind }) => kind !== "misses" || !told);
+      this.#store.set({ advice: shown.map((one) => ({ ...one, ids: one.control_points.map((i) => ids[i]) })) });
     } catch {
       // A newer fit has ended the worker; it is asked again when that is done. Advice is not worth an error.
     }

@@ -124,7 +124,7 @@ export class App {
     const { document, notes } = await this.#core.readSession(files, names);
     this.do(load(fromDocument(document, this.#defaults)));
     if (names.length === 2) this.toast("done", `${names[0]} says where control points are at rest, ${names[1]} where they go`);
-    if (notes.length > 0) this.toast("warning", `${called}: ${notes.map(asSentence).join(" ")}`);
+    if (notes.length > 0) this.toast("warning", `${called}: ${notes.join("; ")}`);
   }
 
   // Control points

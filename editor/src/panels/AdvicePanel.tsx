@@ -6,15 +6,12 @@ import { useApp, useAppState } from "./useStore.ts";
 /** What is likely bad about the shape as it is, and what would help; a click selects the control points that it is about. */
 export function AdvicePanel() {
   const app = useApp();
-  const { advice, report } = useAppState();
-  // Of control points that do not arrive the report has told already, beside the handles.
-  const told = report !== null && (report.soft !== null || report.warnings.length > 0);
-  const shown = advice.filter(({ kind }) => kind !== "misses" || !told);
-  if (shown.length === 0) return null;
+  const { advice } = useAppState();
+  if (advice.length === 0) return null;
   return (
     <Section title="Worth a look">
       <ul class="advice" role="status">
-        {shown.map(({ kind, sentence, ids }) => (
+        {advice.map(({ kind, sentence, ids }) => (
           <li key={kind}>
             <button type="button" title="Select what it is about" onClick={() => app.do(select(ids))}>
               {asSentence(sentence)}

@@ -67,7 +67,7 @@ test("drop, click, drag, undo, redo, mirror, temperature, save: the file is that
   const expected = readFileSync(bent, "utf8");
   const right = vertices(expected);
   expect(difference(right, vertices(chair))).toBeGreaterThan(0.01);
-  expect(difference(right, vertices(saved.bytes.toString()))).toBeLessThan(1e-5);
+  expect(difference(right, vertices(saved.bytes.toString()))).toBeLessThan(1e-6);
   const shown = await editor.evaluate(() => [...neuralmls.readback()!]);
   expect(difference(right, shown)).toBeLessThan(1e-4);
   const others = (text: string) => text.split("\n").filter((line) => !/^vn? /.test(line));
@@ -140,7 +140,7 @@ test("the gizmo rotates a control point, its twin mirrored: the file is that of 
   const plain = info.outputPath("plain.obj");
   command("deform", join(samples, "chair.obj"), "--points", info.outputPath("plain.json"), "-o", plain, "-q");
   expect(difference(right, vertices(readFileSync(plain, "utf8")))).toBeGreaterThan(0.01);
-  expect(difference(right, vertices(saved.bytes.toString()))).toBeLessThan(1e-5);
+  expect(difference(right, vertices(saved.bytes.toString()))).toBeLessThan(1e-6);
   const shown = await editor.evaluate(() => [...neuralmls.readback()!]);
   expect(difference(right, shown)).toBeLessThan(1e-4);
 });

@@ -92,7 +92,7 @@ test("what is saved with half of the way is what the command line makes of the s
     return vertices(readFileSync(bent, "utf8"));
   };
   const right = bend();
-  expect(difference(right, vertices(saved.bytes.toString()))).toBeLessThan(1e-5);
+  expect(difference(right, vertices(saved.bytes.toString()))).toBeLessThan(1e-6);
   expect(difference(right, await editor.evaluate(() => [...neuralmls.readback()!]))).toBeLessThan(1e-4);
   for (const other of [bend("--handles", "auto"), bend("--handles", "soft")]) expect(difference(right, other)).toBeGreaterThan(1e-3);
   // And the reverse: the editor takes up what the file says.

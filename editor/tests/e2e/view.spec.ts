@@ -201,7 +201,7 @@ test("names are whole in the list of control points, and the panel's end can be 
   await expect(list.getByRole("button").last()).toBeInViewport({ ratio: 1 });
   const panel = editor.locator(".panel");
   await panel.evaluate((panel) => panel.scrollTo(0, panel.scrollHeight));
-  await expect(editor.getByRole("slider", { name: "Adherence" })).toBeInViewport({ ratio: 1 });
+  await expect(editor.getByRole("slider", { name: "How closely" })).toBeInViewport({ ratio: 1 });
 });
 
 test("a cloud of points is shaded by depth", async ({ editor }) => {

@@ -16,7 +16,7 @@ from neuralmls.weights.surface_graph import SurfaceGraph
 
 Array = NDArray[np.float64]
 
-# Chosen once, for all shapes, by studies/shape_aware.py; docs/shape-aware.md has the figures.
+# Chosen once, for all shapes, by studies/shape_aware.py; docs/notes/shape-aware.md has the figures.
 POWER = 2.5
 KEPT = 8.0  # logits below the largest by at most this are kept
 TAIL = 4.0  # lower ones fall as this times a logarithm: weights as a power, which a network can learn

@@ -27,7 +27,7 @@ from neuralmls_research import baselines
 Array: TypeAlias = NDArray[np.float64]
 SpaceMap: TypeAlias = Callable[[Array], Array]
 
-OURS = "(ours)"  # in the titles of what is not in the paper: docs/beyond-the-paper.md
+OURS = "(ours)"  # in the titles of what is not in the paper: docs/notes/beyond-the-paper.md
 
 
 class Geometry(Protocol):

@@ -23,7 +23,7 @@ mod anderson;
 /// A handle has arrived when it misses by less than this part of the targets' extent.
 const ARRIVED: f64 = 1e-11;
 /// With less of the weight at its own place a control point is aimed so far past its target that the shape suffers: of the published
-/// displacements, those with 0.15 or less fold and miss, those with 0.28 or more do neither (docs/beyond-the-paper.md).
+/// displacements, those with 0.15 or less fold and miss, those with 0.28 or more do neither (docs/notes/beyond-the-paper.md).
 const OWNED: f64 = 0.25;
 /// Two control points have the same weights when each has this much at the other's place, in what it has at its own (product of both): rigid
 /// maps cannot part them. Published displacements with 0.25 of the weight and more: up to 0.40.
@@ -33,7 +33,7 @@ const REACHED: f64 = 1e-6;
 /// Two ways to take a handle to a place are the same when they differ by no more than this part of the targets' extent.
 const SAME: f64 = 1e-7;
 /// A careful aim does not rely on a rotation at a control point that is better than others by less than this part of what it is at rest. Of
-/// 0.02, 0.05 and 0.1 this had the fewest drags with jumps, and all of the published displacements still arrive (docs/beyond-the-paper.md).
+/// 0.02, 0.05 and 0.1 this had the fewest drags with jumps, and all of the published displacements still arrive (docs/notes/beyond-the-paper.md).
 const UNDECIDED: f64 = 0.1;
 
 /// The control points as points that are deformed themselves.

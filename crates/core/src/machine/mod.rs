@@ -5,3 +5,4 @@ pub(crate) mod parallel;
 pub mod progress;
 pub(crate) mod random;
 pub(crate) mod simd;
+pub(crate) mod threads;

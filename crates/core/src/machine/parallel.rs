@@ -2,108 +2,20 @@
 
 use std::marker::PhantomData;
 use std::ops::Range;
-use std::sync::{Mutex, MutexGuard, TryLockError};
 #[cfg(feature = "threads")]
 use std::{
     sync::{
-        atomic::{
-            AtomicBool, AtomicPtr, AtomicUsize,
-            Ordering::{AcqRel, Acquire, Relaxed},
-        },
-        Condvar, PoisonError,
+        atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed},
+        Condvar, Mutex, PoisonError,
     },
     time::Duration,
 };
 
 #[cfg(feature = "threads")]
-use rayon::{Scope, ThreadPool, ThreadPoolBuilder};
+use super::threads::{on_threads, scope, threads};
 
 use crate::error::Error;
 use crate::machine::progress::{report, Progress};
-
-/// The threads of one process.
-///
-/// Not rayon's own ones: a process that forks has none of its parent's threads, so that work that is given to them waits for ever. Here
-/// a child makes its own when it first needs them. What it has of its parent's pool is left alone.
-#[cfg(feature = "threads")]
-struct Pool {
-    process: u32,
-    threads: ThreadPool,
-}
-
-/// The last one that was made; none is ever freed.
-#[cfg(feature = "threads")]
-static POOL: AtomicPtr<Pool> = AtomicPtr::new(std::ptr::null_mut());
-
-#[cfg(feature = "threads")]
-fn pool() -> &'static ThreadPool {
-    let process = std::process::id();
-    let last = POOL.load(Acquire);
-    // SAFETY: it points to nothing, or to a pool that is whole and never freed.
-    if let Some(pool) = unsafe { last.as_ref() } {
-        if pool.process == process {
-            return &pool.threads;
-        }
-    }
-    let threads = ThreadPoolBuilder::new().thread_name(|index| format!("neuralmls-{index}")).build();
-    let new = Box::new(Pool { process, threads: threads.expect("the system gives this process threads") });
-    let new = Box::into_raw(new);
-    match POOL.compare_exchange(last, new, AcqRel, Acquire) {
-        // SAFETY: it was made above, and from now on is never freed.
-        Ok(_) => unsafe { &(*new).threads },
-        Err(other) => {
-            // SAFETY: it was made above, and nobody else has seen it.
-            drop(unsafe { Box::from_raw(new) });
-            // SAFETY: another thread of this process made it meanwhile; it is whole, and never freed.
-            unsafe { &(*other).threads }
-        }
-    }
-}
-
-/// Runs `work` where the loops' threads are: on one of them, or on the calling one if that is a thread of some pool.
-#[cfg(feature = "threads")]
-fn on_threads<R: Send>(work: impl FnOnce() -> R + Send) -> R {
-    if rayon::current_thread_index().is_some() {
-        work()
-    } else {
-        pool().install(work)
-    }
-}
-
-/// A scope whose tasks run on those threads; the calling thread does `work`.
-#[cfg(feature = "threads")]
-fn scope<'scope, R>(work: impl FnOnce(&Scope<'scope>) -> R) -> R {
-    if rayon::current_thread_index().is_some() {
-        rayon::in_place_scope(work)
-    } else {
-        pool().in_place_scope(work)
-    }
-}
-
-/// A lock that is held but for moments; none if it is held for longer. In a process that was forked, that is for ever: by a thread that
-/// there is no more.
-pub(crate) fn briefly<T>(lock: &Mutex<T>) -> Option<MutexGuard<'_, T>> {
-    for _ in 0..1 << 10 {
-        match lock.try_lock() {
-            Ok(guard) => return Some(guard),
-            Err(TryLockError::Poisoned(guard)) => return Some(guard.into_inner()),
-            Err(TryLockError::WouldBlock) => std::thread::yield_now(),
-        }
-    }
-    None
-}
-
-/// Threads that share the work.
-pub(crate) fn threads() -> usize {
-    #[cfg(feature = "threads")]
-    return if rayon::current_thread_index().is_some() {
-        rayon::current_num_threads()
-    } else {
-        pool().current_num_threads()
-    };
-    #[cfg(not(feature = "threads"))]
-    return 1;
-}
 
 /// Calls `work(progress)` on a thread that shares the loops' work, where the calling one does not: one that starts many short loops
 /// then waits for none of them to be taken up. The calling thread reports what `progress` is told.
@@ -115,7 +27,7 @@ pub(crate) fn on_a_working_thread<R: Send>(
     if rayon::current_thread_index().is_none() {
         let (sender, fractions) = std::sync::mpsc::channel();
         let mut result = Err(Error::Cancelled);
-        let told = self::scope(|scope| {
+        let told = scope(|scope| {
             let result = &mut result;
             // Once the caller wants to stop there is no receiver.
             scope.spawn(move |_| *result = work(&mut |fraction| sender.send(fraction).is_ok()));
@@ -174,7 +86,7 @@ pub(crate) fn for_each_at_once<P: Send>(
         let pieces = Mutex::new(pieces.enumerate());
         let next = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next();
         let run = || std::iter::from_fn(next).for_each(|(index, piece)| work(index, piece));
-        self::scope(|scope| {
+        scope(|scope| {
             (0..helpers).for_each(|_| scope.spawn(|_| run()));
             run();
         });
@@ -229,7 +141,7 @@ pub(crate) fn for_each_task(
             }
         };
         let threads = threads().min(count);
-        self::scope(|scope| {
+        scope(|scope| {
             for _ in 0..threads {
                 scope.spawn(|_| {
                     // Whatever becomes of the work, the calling thread must not wait for ever.
@@ -346,74 +258,4 @@ impl<'a> SharedRows<'a> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn squares(count: usize) -> Vec<usize> {
-        let mut numbers = vec![0; count];
-        for_each_block(&mut numbers, 7, |block, numbers| {
-            numbers.iter_mut().enumerate().for_each(|(i, number)| *number = (7 * block + i).pow(2));
-        });
-        numbers
-    }
-
-    #[test]
-    fn every_block_and_task_is_done_once() {
-        let count = if cfg!(miri) { 40 } else { 4000 };
-        let expected: Vec<usize> = (0..count).map(|i| i * i).collect();
-        assert_eq!(squares(count), expected);
-        assert_eq!(
-            of_blocks(&expected, 5, |block| block.iter().sum(), |a: usize, b| a + b),
-            Some(expected.iter().sum())
-        );
-        let mut rows = vec![0.0; 3 * count];
-        let shared = SharedRows::new(&mut rows, 3);
-        for_each_task(count, 0.0..1.0, &mut |_| true, |task, _| {
-            // SAFETY: each task has a row of its own.
-            unsafe { shared.row(task) }.fill(task as f32);
-        })
-        .unwrap();
-        assert!(rows.chunks(3).enumerate().all(|(i, row)| row == [i as f32; 3]));
-        let mut done = vec![false; count];
-        for_each_at_once(done.iter_mut(), |_, done| *done = true);
-        assert!(done.iter().all(|done| *done));
-    }
-
-    #[test]
-    fn a_lock_that_nobody_gives_back_is_not_waited_for() {
-        let lock = Mutex::new(1);
-        let held = briefly(&lock);
-        assert!(briefly(&lock).is_none());
-        drop(held);
-        assert_eq!(briefly(&lock).as_deref(), Some(&1));
-    }
-
-    /// Its parent's threads are not there; so it must not wait for them.
-    #[cfg(all(target_os = "linux", feature = "threads", not(miri)))]
-    #[test]
-    fn a_forked_child_has_threads_of_its_own() {
-        let expected: Vec<usize> = (0..4000).map(|i| i * i).collect();
-        assert_eq!(squares(4000), expected);
-        // SAFETY: the child does nothing but this, and ends without going back to what it was in the middle of.
-        let child = unsafe { libc::fork() };
-        if child == 0 {
-            let right = squares(4000) == expected;
-            // SAFETY: ends the process.
-            unsafe { libc::_exit(i32::from(!right)) };
-        }
-        let mut status = -1;
-        for _ in 0..600 {
-            // SAFETY: `status` may be written.
-            if unsafe { libc::waitpid(child, &mut status, libc::WNOHANG) } == child {
-                break;
-            }
-            std::thread::sleep(Duration::from_millis(100));
-            status = -1;
-        }
-        if status == -1 {
-            // SAFETY: that child, which has not ended.
-            unsafe { libc::kill(child, libc::SIGKILL) };
-        }
-        assert_eq!(status, 0, "-1: it hangs");
-    }
-}
+mod tests;

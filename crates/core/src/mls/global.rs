@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! G = argmax over SO(d) of tr(R (C / |C| + w I))
-//! w = 1e-9 min(1, (e^2 + 1e-18) / h^2)^2
+//! w = 1e-9 min(1, (e^2 + 1e-18) / h^2)^2                          (docs/rotation.md, eq. 15)
 //! ```
 //!
 //! with `h` the thickness of the control points about their longest axis, and `e` what the best similarity leaves of their targets, each relative
@@ -17,10 +17,10 @@
 //! them with `h = 1e-6`, not at all.
 //!
 //! Since C has lost its 17th digit, and so `h^2` its 5th, the last steps are taken from the displacements that are left, `b - s R a`, not from
-//! C: their moment `sum (R a) x (b - s R a)` is that of `(R a) x b`, to the last digit of `h` (docs/rotation.md, section 5).
+//! C: their moment `sum (R a) x (b - s R a)` is that of `(R a) x b`, to the last digit of `h` (docs/rotation.md, eq. 14).
 
 use super::affine;
-use super::matrix::{apply, cholesky, identity, norm, solve, Matrix};
+use super::matrix::{apply, cholesky, identity, norm, solve, transposed, Matrix};
 use super::moments::Moments;
 use super::oriented::{self, Oriented};
 use super::rotation::{best_quaternion, best_rotation, of_quaternion, ANCHOR_WEIGHT};
@@ -111,9 +111,10 @@ impl Arms {
         let places = from_centre(p).into_iter().zip(from_centre(q));
         let mut arms: Vec<Arm> = places.map(|(a, b)| Arm { share, a, b, place: true }).collect();
         for Oriented { rotation, square, .. } in oriented {
-            for axis in 0..D {
+            // The columns of the rotation are where the axes go.
+            for (axis, column) in transposed(rotation).iter().enumerate() {
                 let a = std::array::from_fn(|k| f64::from(u8::from(k == axis)));
-                let b = std::array::from_fn(|k| if k < D { rotation[k][axis] } else { 0.0 });
+                let b = std::array::from_fn(|k| if k < D { column[k] } else { 0.0 });
                 arms.push(Arm { share: share * share * square, a, b, place: false });
             }
         }
@@ -163,7 +164,7 @@ impl Arms {
         power[longest].map(|e| e / length)
     }
 
-    /// Newton's method for `tr(R (C / |C| + w I))` from the quaternion `u` on.
+    /// Newton's method for `tr(R (C / |C| + w I))` from the quaternion `u` on (docs/rotation.md, eq. 9 and 14).
     fn refined(&self, mut u: [f64; 4], w: f64) -> [f64; 4] {
         let c: Matrix<3> =
             std::array::from_fn(|r| std::array::from_fn(|c| self.sum(|arm| arm.a[r] * arm.b[c])));
@@ -190,8 +191,8 @@ impl Arms {
             });
             let Some(lower) = cholesky(&s) else { return u };
             let z = solve(&lower, g);
-            // Written so that NaN stops it.
-            if !(square_of(&z) < LONGEST * LONGEST) {
+            let short = square_of(&z) < LONGEST * LONGEST; // Not if it is NaN.
+            if !short {
                 return u;
             }
             u = turned_by(&u, &z.map(|e| 0.5 * e));

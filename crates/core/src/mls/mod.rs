@@ -49,12 +49,12 @@ pub struct Local<const D: usize> {
 }
 
 impl<'a, const D: usize> Mls<'a, D> {
-    /// Fits the anchor. `p` and `q` hold the same number of control points, at least one.
-    pub fn new(p: &'a [[f64; D]], q: &'a [[f64; D]], transform: Transform) -> Self {
+    #[cfg(test)]
+    pub(crate) fn new(p: &'a [[f64; D]], q: &'a [[f64; D]], transform: Transform) -> Self {
         Self::with_oriented(p, q, Vec::new(), transform)
     }
 
-    /// The same with the control points of which `oriented` says how they turn.
+    /// Fits the anchor. `p` and `q` hold the same number of control points, at least one; of some `oriented` says how they turn.
     pub(crate) fn with_oriented(
         p: &'a [[f64; D]],
         q: &'a [[f64; D]],

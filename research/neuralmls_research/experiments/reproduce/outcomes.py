@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 BEYOND = (
     f"What is marked {OURS} is not in the paper: handles that arrive (exact), weights taught by random walks over the "
-    "shape (shape-aware); see docs/beyond-the-paper.md."
+    "shape (shape-aware); see docs/notes/beyond-the-paper.md."
 )
 
 

@@ -1,7 +1,7 @@
 //! Kernels that are loops over lanes: `for lane in 0..64 { arithmetic on numbers[lane] }`.
 //!
 //! A loop whose body is straight arithmetic (choices as `if a { b } else { c }`, no calls, inner loops of constant length) is what compilers
-//! turn into vector instructions without help, for single and double precision alike. [`multiversion_loops!`] compiles such a
+//! vectorise without help, for single and double precision alike. [`multiversion_loops!`] compiles such a
 //! kernel, `#[inline(always)]`, for each instruction set, with the constant `FMA` that says whether a fused multiply-add is one
 //! instruction.
 

@@ -1,4 +1,4 @@
-//! One kernel, compiled for several instruction sets, the best of which is chosen when it runs.
+//! Vectorised kernels (SIMD): one kernel, compiled for several instruction sets, the best of which is chosen when it runs.
 //!
 //! A kernel is written once over [`Lanes`], sixteen numbers in registers, and `#[inline(always)]`. [`multiversion!`] compiles it
 //! for each instruction set and calls the version that was detected.
@@ -37,7 +37,7 @@ pub(crate) enum InstructionSet {
     Avx512,
 }
 
-use InstructionSet::{Avx2, Avx512, Portable as Every};
+use InstructionSet::{Avx2, Portable as Every};
 
 impl Simd {
     /// The best that this machine has; the environment variable `NEURALMLS_SIMD` (portable, avx2) asks for less.
@@ -53,10 +53,11 @@ impl Simd {
     /// All that this machine has, for tests of a kernel on each.
     #[cfg(test)]
     pub(crate) fn all() -> impl Iterator<Item = Simd> {
-        [Every, Avx2, Avx512].into_iter().filter(|set| *set <= best()).map(Simd)
+        [Every, Avx2, InstructionSet::Avx512].into_iter().filter(|set| *set <= best()).map(Simd)
     }
 
     /// Which one it is.
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(crate) fn set(self) -> InstructionSet {
         self.0
@@ -67,7 +68,7 @@ impl Simd {
     pub(crate) fn choose<K: Kernel>(self) -> K::Call {
         match self.0 {
             #[cfg(target_arch = "x86_64")]
-            Avx512 => K::avx512::<lanes::Avx512>(),
+            InstructionSet::Avx512 => K::avx512::<lanes::Avx512>(),
             #[cfg(target_arch = "x86_64")]
             Avx2 => K::avx2::<lanes::Avx2>(),
             _ => K::portable::<lanes::Portable>(),
@@ -84,7 +85,7 @@ fn best() -> InstructionSet {
     if !(is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")) {
         Every
     } else if avx512 {
-        Avx512
+        InstructionSet::Avx512
     } else {
         Avx2
     }

@@ -40,7 +40,7 @@ use crate::softmax::{Row, LANES};
 /// Points in a batch: enough of them to hide the latency of divisions, few enough to stay in the first cache.
 pub(crate) const BATCH: usize = 64;
 
-/// One number of each point of a batch.
+/// One number of each point of a batch: what a batch knows is a structure of arrays.
 type Lane = [f64; BATCH];
 
 /// The same in single precision.
@@ -219,7 +219,7 @@ multiversion_loops! {
     fn round(numbers: &[Lane; 9], singles: &mut [Singles; 9]) = round_body
 }
 
-/// Numbers below 1e-38 cost a hundred times as much as others.
+/// Denormal numbers (below 1e-38) cost a hundred times as much as others.
 const LEAST: f64 = 1e-17;
 
 #[inline(always)]

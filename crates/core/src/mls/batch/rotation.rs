@@ -1,10 +1,10 @@
 //! The rule for the rotation (DESIGN, [`super::super::rotation`]) in lanes, in double precision from where [`super::start`] is.
 //!
 //! ```text
-//! A = C / |C| + 1e-9 G^T
+//! A = C / |C| + 1e-9 G^T                                                   (docs/rotation.md, eq. 2)
 //! until all lanes are there:
 //!     S = R A    g = its antisymmetric part, where tr(exp(z) S) rises    H = tr(S) I - its symmetric part
-//!     z = (2 H)^-1 g    R = the rotation of the quaternion (1, z (1 - |z|^2)), times R
+//!     z = (2 H)^-1 g    R = the rotation of the quaternion (1, z (1 - |z|^2)), times R     (eq. 9 to 11)
 //! ```
 //!
 //! Newton's method; since `tr(exp(z) S)` has no cubic term where S is symmetric, a step leaves the cube of its length: 1e-4 becomes
@@ -206,12 +206,12 @@ fn newton<D: Doubles>(a: &[D; 9], u: &[D; 4]) -> Step<D> {
     let dot = |x: D, y: D, z: D, with: &[D; 3]| x.mul_add(with[0], y.mul_add(with[1], z.mul(with[2])));
     let z = scaled(&[dot(bxx, bxy, bxz, &g), dot(bxy, byy, byz, &g), dot(bxz, byz, bzz, &g)], inverse);
 
-    // Of three numbers with a positive sum and a positive product, one of which is open, two would have to be below 0 if any were; then so
+    // (docs/rotation.md, eq. 12) Of three numbers with a positive sum and a positive product, one of which is open, two would have to be below 0 if any were; then so
     // would be the sum of the products of two.
     let minors = bxx.add(byy).add(bzz);
     let definite = D::and((D::splat(0.0)).less(minors), minors.mul(D::splat(OPEN)).less(determinant));
     let definite = D::and(D::splat(0.0).less(xx.add(yy).add(zz)), definite);
-    // Weights are single. Without a mirror their rounding turns nothing by more than itself; with one, what the determinant of A
+    // Eq. 13. Weights are single. Without a mirror their rounding turns nothing by more than itself; with one, what the determinant of A
     // measures cancels in that of H.
     let first = [minor(a[4], a[8], a[5], a[7]), minor(a[5], a[6], a[3], a[8]), minor(a[3], a[7], a[4], a[6])];
     let mirrored = D::splat(0.0).sub(dot(a[0], a[1], a[2], &first));

@@ -3,8 +3,8 @@
 //! ```text
 //! A = C / |C| + 1e-6 G^T
 //! K = cofactors of A    k = |K|^2    d = det A
-//! v = largest root of (v (2 + v))^2 = 8 d (1 + v) + 4 k, by Newton's method from above
-//! u = column of the adjugate of N(A) - (1 + v) I with the largest diagonal
+//! v = largest root of (v (2 + v))^2 = 8 d (1 + v) + 4 k, by Newton's method from above   (docs/rotation.md, eq. 6)
+//! u = column of the adjugate of N(A) - (1 + v) I with the largest diagonal               (eq. 8)
 //! ```
 //!
 //! Horn 1987 has the matrix N and its quartic; the largest eigenvalue is s1 + s2 + s3, with s3 < 0 where det A < 0: a rotation, never
@@ -18,7 +18,7 @@ use crate::machine::simd::{minor, multiversion, square_of, Lanes, WIDTH};
 
 /// The weight of the anchor here.
 const ANCHOR: f32 = 1e-6;
-/// What is added to each entry, so that no product of some of them is below 1e-38, where numbers cost a hundred times as much.
+/// What is added to each entry, so that no product of some of them is denormal (below 1e-38), where numbers cost a hundred times as much.
 const LEAST: f32 = 1e-9;
 /// Newton's steps: what they leave, the corrections in double precision take away.
 const STEPS: usize = 3;
@@ -147,7 +147,7 @@ fn root<L: Lanes>(square: L) -> L {
     square.mul(square.inverse_sqrt())
 }
 
-/// v, from a bound of it that is v itself where s3 is 0 or s1: with `b = s1 s2 + s1 s3 + s2 s3`, `b^2 = k + 2 d (1 + v)`, and
+/// v, from a bound of it (docs/rotation.md, eq. 7) that is v itself where s3 is 0 or s1: with `b = s1 s2 + s1 s3 + s2 s3`, `b^2 = k + 2 d (1 + v)`, and
 /// `v <= sqrt(3) - 1`; then `v = sqrt(1 + 2 b) - 1`.
 #[inline(always)]
 fn largest_root<L: Lanes>(d: L, k: L) -> L {

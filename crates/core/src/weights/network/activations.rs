@@ -2,7 +2,7 @@
 
 use crate::machine::simd::{Aligned, WIDTH};
 
-/// Numbers of some neurons for every point of a batch, `[neuron / 16][point][16]`, neurons padded with zeros.
+/// Numbers of some neurons for every point of a batch, a structure of arrays `[neuron / 16][point][16]`, neurons padded with zeros.
 #[derive(Clone, Debug)]
 pub(super) struct Activations {
     pub(super) lanes: Vec<Aligned>,

@@ -8,7 +8,7 @@ const BETA_1: f64 = 0.9;
 const BETA_2: f64 = 0.999;
 const EPSILON: f32 = 1e-8;
 
-/// Numbers near the smallest that there are make a processor a hundred times slower, and a moment without further gradients
+/// Denormal numbers, near the smallest that there are, make a processor a hundred times slower, and a moment without further gradients
 /// decays to them. Second moments are at least this: beside [`EPSILON`] its root is nothing.
 const LEAST_SQUARE: f32 = 1e-30;
 /// What is smaller is taken for 0: errors always, first moments now and then. It would not move a weight by its last digit.

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::features;
 use super::gemm::{multiply, View};
-use super::network::{relu, Layer, Network};
+use super::parameters::{relu, Layer, Parameters};
 use crate::error::Error;
 use crate::geometry::{Order, PointTree};
 use crate::machine::memory::zeros;
@@ -18,8 +18,12 @@ const BLOCK: usize = 128;
 const CHUNK: usize = 1 << 14;
 
 /// The logits of the points `x`, row by row: n x m.
-pub(super) fn logits(network: &Network, x: &[f64], progress: &mut Progress<'_>) -> Result<Vec<f32>, Error> {
-    let (dim, m) = (network.dim(), network.outputs());
+pub(super) fn logits(
+    network: &Parameters,
+    x: &[f64],
+    progress: &mut Progress<'_>,
+) -> Result<Vec<f32>, Error> {
+    let (dim, m) = (network.dim, network.outputs());
     let mut logits = zeros(x.len() / dim * m)?;
     let chunks = logits.len().div_ceil(CHUNK * m).max(1);
     for (index, (x, logits)) in x.chunks(CHUNK * dim).zip(logits.chunks_mut(CHUNK * m)).enumerate() {
@@ -36,7 +40,7 @@ pub(super) fn logits(network: &Network, x: &[f64], progress: &mut Progress<'_>) 
 
 /// Writes the logits of the tree's points row by row, n x m, in their own order or in the tree's.
 pub(super) fn write_logits(
-    network: &Network,
+    network: &Parameters,
     tree: &PointTree,
     order: Order,
     logits: &mut [f32],
@@ -55,16 +59,16 @@ pub(super) fn write_logits(
 /// # Safety
 /// Nobody else may use these points' rows meanwhile.
 pub(super) unsafe fn evaluate_places(
-    network: &Network,
+    network: &Parameters,
     tree: &PointTree,
     order: Order,
     places: Range<usize>,
     rows: &SharedRows<'_>,
 ) {
-    let (dim, m) = (network.dim(), network.outputs());
+    let (dim, m) = (network.dim, network.outputs());
     let mut input = Vec::new();
     for place in places.clone() {
-        features::append(&tree.point(place)[..dim], network.frequencies(), &mut input);
+        features::append(&tree.point(place)[..dim], &network.frequencies, &mut input);
     }
     let mut logits = vec![0.0; places.len() * m];
     evaluate(network, input, &mut logits);
@@ -75,9 +79,9 @@ pub(super) unsafe fn evaluate_places(
 }
 
 /// `input` is what the first layer sees.
-fn evaluate(network: &Network, mut input: Vec<f32>, logits: &mut [f32]) {
+fn evaluate(network: &Parameters, mut input: Vec<f32>, logits: &mut [f32]) {
     let points = logits.len() / network.outputs();
-    let [hidden @ .., last] = network.layers();
+    let [hidden @ .., last] = &network.layers;
     for layer in hidden {
         let mut output = vec![0.0; points * layer.outputs()];
         linear(layer, &input, &mut output);

@@ -2,7 +2,7 @@
 
 use super::activations::Activations;
 use super::adam::Rates;
-use super::network::Layer;
+use super::parameters::Layer;
 use crate::machine::parallel::for_each_block;
 use crate::machine::simd::{multiversion, Aligned, Lanes, Simd, WIDTH};
 

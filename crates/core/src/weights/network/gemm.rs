@@ -1,6 +1,6 @@
 //! The dense products of a training step, cut into blocks of neurons that any thread may do.
 
-use super::network::Layer;
+use super::parameters::Layer;
 use crate::machine::parallel::for_each_block;
 
 /// Multiplications a block: fewer are done before another thread has begun.

@@ -1,6 +1,6 @@
 //! The parameters before training: as `torch.nn.Linear` has them, from a seed.
 
-use super::network::Layer;
+use super::parameters::Layer;
 use crate::machine::random::Random;
 
 /// Frequencies of the random Fourier features, as in the published code.

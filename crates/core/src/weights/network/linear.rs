@@ -14,7 +14,7 @@
 
 use super::activations::Activations;
 use super::adam::Rates;
-use super::network::Layer;
+use super::parameters::Layer;
 use crate::machine::memory::filled;
 use crate::machine::parallel::{for_each_block, for_each_block_pair};
 use crate::machine::simd::{Aligned, Simd, WIDTH};

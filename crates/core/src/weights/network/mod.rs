@@ -11,11 +11,13 @@ mod first;
 mod gemm;
 mod initialise;
 mod linear;
-mod network;
+mod mlp;
+mod parameters;
 mod piecewise;
 mod samples;
 mod train;
 
-pub use network::{Layer, Network};
+pub use mlp::Network;
+pub use parameters::Layer;
 pub use samples::Samples;
 pub use train::{fit, train, Schedule, Trained, Training};

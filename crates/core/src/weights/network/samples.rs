@@ -1,6 +1,5 @@
 //! Points of a shape that a network is taught with besides the control points: how likely each control point is there.
 
-use super::train::lexicographic_order;
 use crate::check::check_points;
 use crate::error::Error;
 use crate::machine::random::Random;
@@ -100,6 +99,13 @@ impl Batches {
 pub(super) fn sorted(p: &[f64], dim: usize) -> (Vec<f64>, Vec<usize>) {
     let order = lexicographic_order(p, dim);
     (order.iter().flat_map(|&i| &p[dim * i..dim * i + dim]).copied().collect(), order)
+}
+
+pub(super) fn lexicographic_order(p: &[f64], dim: usize) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..p.len() / dim).collect();
+    let point = |i: usize| &p[dim * i..dim * i + dim];
+    order.sort_by(|&a, &b| point(a).partial_cmp(point(b)).expect("finite"));
+    order
 }
 
 #[cfg(test)]

@@ -7,8 +7,9 @@
 use std::f64::consts::PI;
 
 use super::features;
-use super::network::{Layer, Network};
-use super::samples::{sorted, Lessons, Samples};
+use super::mlp::Network;
+use super::parameters::{Layer, Parameters};
+use super::samples::{lexicographic_order, sorted, Lessons, Samples};
 use crate::check::{check_number, check_points};
 use crate::error::Error;
 use crate::geometry::Frame;
@@ -138,10 +139,11 @@ pub fn fit(
     if let Some(samples) = samples {
         bend_at(&mut layers[0], samples.x, dim, &frame);
     }
-    let network = Network::new(dim, frame, frequencies, layers)?;
+    let network = Parameters::new(dim, frame, frequencies, layers)?;
 
     let mut trained = teach(network, p, lessons, training.schedule, training.rate, progress)?;
-    trained.network.layers[2] = in_order(&trained.network.layers[2], &order);
+    let last = &mut trained.network.parameters.layers[2];
+    *last = in_order(last, &order);
     Ok(trained)
 }
 
@@ -181,11 +183,11 @@ pub fn train(
         ));
     }
     let lessons = Lessons::of_control_points(p, network.dim());
-    teach(network, p, lessons, schedule, rate, progress)
+    teach(network.parameters, p, lessons, schedule, rate, progress)
 }
 
 fn teach(
-    network: Network,
+    network: Parameters,
     p: &[f64],
     lessons: Lessons,
     schedule: Schedule,
@@ -226,7 +228,7 @@ fn teach(
             });
         };
         report(progress, 1.0)?;
-        Ok(Trained { control_points: p.to_vec(), network: trainer.finish(), losses, loss })
+        Ok(Trained { control_points: p.to_vec(), network: Network::from(trainer.finish()), losses, loss })
     })
 }
 
@@ -245,13 +247,6 @@ fn check_control_points(p: &[f64], dim: usize) -> Result<usize, Error> {
         }
     }
     Ok(m)
-}
-
-pub(super) fn lexicographic_order(p: &[f64], dim: usize) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..p.len() / dim).collect();
-    let point = |i: usize| &p[dim * i..dim * i + dim];
-    order.sort_by(|&a, &b| point(a).partial_cmp(point(b)).expect("finite"));
-    order
 }
 
 /// The last layer with row k moved to where `order[k]` says.

@@ -5,7 +5,7 @@ use crate::machine::simd::{Lanes, WIDTH};
 
 /// Where a map is bounded.
 #[derive(Clone, Copy)]
-pub(super) struct Place<'a> {
+pub(super) struct Domain<'a> {
     pub region: &'a Region,
     /// All points in it that there are, if it is worth looking at each; else none.
     pub points: &'a [Point],
@@ -32,10 +32,10 @@ pub(super) fn bounds<L: Lanes>(map: [L; 4], spread: L, region: &Region) -> (L, L
     (middle.sub(half), middle.add(half))
 }
 
-/// The least and the most that `map (x, 1) +- spread` can be at the points of a place.
+/// The least and the most that `map (x, 1) +- spread` can be at the points of a domain.
 #[inline(always)]
-pub(super) fn bounds_at<L: Lanes>(map: [L; 4], spread: L, place: Place<'_>) -> (L, L) {
-    let Place { region, points } = place;
+pub(super) fn bounds_at<L: Lanes>(map: [L; 4], spread: L, domain: Domain<'_>) -> (L, L) {
+    let Domain { region, points } = domain;
     let mut size = map[3].abs().add(spread);
     for k in 0..3 {
         size = map[k].abs().mul_add(L::splat(region.centre[k].abs() + region.half[k]), size);
@@ -84,8 +84,8 @@ mod tests {
                 .collect();
             let map = [0; 4].map(|_| Portable::load(numbers(WIDTH).first_chunk().unwrap()));
             let spread = 0.25;
-            let place = Place { region: &region, points: &points };
-            let (lower, upper) = bounds_at(map, Portable::splat(spread), place);
+            let domain = Domain { region: &region, points: &points };
+            let (lower, upper) = bounds_at(map, Portable::splat(spread), domain);
             let (least, most) = bounds(map, Portable::splat(spread), &region);
             for lane in 0..WIDTH {
                 let map = map.map(|plane| f64::from(plane.store()[lane]));

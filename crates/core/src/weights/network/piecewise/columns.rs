@@ -1,15 +1,15 @@
 //! Layer 1 over a box: which of its neurons are surely on, surely off, or open. In layer 2 each of them is a column.
 
-use super::bounds::{bounds, bounds_at, classify, Place, MANY};
-use super::planes::Planes;
+use super::bounds::{bounds, bounds_at, classify, Domain, MANY};
+use super::lane_list::LaneList;
 use crate::machine::simd::{multiversion, Lanes, WIDTH};
 
 /// Neurons of layer 1: `w` (3 coordinates), `b`, and the bits of the number of the column.
-pub(super) type Columns = Planes<5>;
+pub(super) type Columns = LaneList<5>;
 
 /// Open neurons of layer 1 as terms of layer 2's rows: an affine map, how far the neuron may be from it, and the bits of the number
 /// of the column.
-pub(super) type Relaxed = Planes<6>;
+pub(super) type Relaxed = LaneList<6>;
 
 /// What a parent's columns are in a child's box.
 #[derive(Default)]
@@ -22,24 +22,24 @@ multiversion! {
     /// Sorts the parent's columns over a box, and keeps the open ones in `child`, with the numbers that they have in the parent.
     pub(super) fn sort(
         parent: &Columns,
-        place: Place<'_>,
+        domain: Domain<'_>,
         child: &mut Columns,
         sorted: &mut Sorted,
     ) = sort_body
 }
 
 #[inline(always)]
-fn sort_body<L: Lanes>(parent: &Columns, place: Place<'_>, child: &mut Columns, sorted: &mut Sorted) {
+fn sort_body<L: Lanes>(parent: &Columns, domain: Domain<'_>, child: &mut Columns, sorted: &mut Sorted) {
     let Sorted { on, open } = sorted;
     on.clear(parent.len);
     open.clear(parent.len);
     child.clear(parent.len);
     let nothing = L::splat(0.0);
-    let look = !place.points.is_empty() && parent.len >= MANY;
+    let look = !domain.points.is_empty() && parent.len >= MANY;
     for first in (0..parent.len).step_by(WIDTH) {
         let column = parent.load::<L>(first);
         let [a, b, c, d, _] = column;
-        let (lower, upper) = bounds([a, b, c, d], nothing, place.region);
+        let (lower, upper) = bounds([a, b, c, d], nothing, domain.region);
         let [on_bits, open_bits] = classify(lower, upper);
         let neurons = u32::MAX >> (32 - WIDTH.min(parent.len - first));
         on.append(on_bits & neurons, column);
@@ -55,7 +55,7 @@ fn sort_body<L: Lanes>(parent: &Columns, place: Place<'_>, child: &mut Columns, 
     for first in (0..left).step_by(WIDTH) {
         let column = child.load::<L>(first);
         let [a, b, c, d, _] = column;
-        let (lower, upper) = bounds_at([a, b, c, d], nothing, place);
+        let (lower, upper) = bounds_at([a, b, c, d], nothing, domain);
         let [on_bits, open_bits] = classify(lower, upper);
         let neurons = u32::MAX >> (32 - WIDTH.min(left - first));
         on.append(on_bits & neurons, column);

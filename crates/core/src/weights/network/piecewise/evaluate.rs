@@ -1,17 +1,20 @@
 //! The walk over the points' tree.
 
-use super::bounds::Place;
+use super::bounds::Domain;
 use super::columns::{sort, Columns};
-use super::leaf::{self, Activations};
-use super::node::{Level, Part};
-use super::rows::{add_columns, Rows};
-use super::whole::{Prepared, Whole, PACK};
+use super::layout::{Prepared, Whole, PACK};
+use super::leaf::{self, Neurons};
+use super::node::Level;
+use super::part::Part;
+use super::rows::add_columns;
+use super::workspace::Workspace;
 use crate::error::Error;
 use crate::geometry::{Node, Order, PointTree, LEAF, LEAF_BLOCKS};
-use crate::machine::parallel::{briefly, for_each_block, for_each_task, threads, SharedRows};
+use crate::machine::parallel::{for_each_block, for_each_task, SharedRows};
 use crate::machine::progress::Progress;
 use crate::machine::simd::{Aligned, Simd, WIDTH};
-use crate::weights::network::{dense, network::Network};
+use crate::machine::threads::{briefly, threads};
+use crate::weights::network::{dense, parameters::Parameters};
 
 /// Nodes of this depth are made from the whole network.
 const DEPTH: usize = 5;
@@ -31,7 +34,8 @@ const AHEAD: usize = LEAF / 4;
 /// features.
 pub(crate) fn write_logits(
     simd: Simd,
-    network: &Network,
+    network: &Parameters,
+    prepared: &Prepared,
     tree: &PointTree,
     order: Order,
     logits: &mut [f32],
@@ -40,10 +44,11 @@ pub(crate) fn write_logits(
     if tree.is_empty() {
         return Ok(());
     }
+    let whole = prepared.of(network);
     let walk = Walk {
         simd,
         network,
-        whole: Prepared::of(network),
+        whole: &whole,
         tree,
         order,
         logits: SharedRows::new(logits, network.outputs()),
@@ -53,24 +58,11 @@ pub(crate) fn write_logits(
 
 struct Walk<'a> {
     simd: Simd,
-    network: &'a Network,
+    network: &'a Parameters,
     whole: &'a Whole,
     tree: &'a PointTree,
     order: Order,
     logits: SharedRows<'a>,
-}
-
-/// What one task works with.
-#[derive(Default)]
-pub(super) struct Workspace {
-    /// Nodes that are made from the whole network, and rows of it.
-    tops: Vec<Level>,
-    rows: Rows,
-    /// The affine parts of those rows over the nodes above.
-    affines: Vec<Vec<[Aligned; 4]>>,
-    /// One a level of the tree.
-    levels: Vec<Level>,
-    activations: Activations,
 }
 
 /// A node above those that are made from the whole network. It copies no rows: columns that are on in it are added to the rows'
@@ -119,8 +111,8 @@ impl Walk<'_> {
         let whole = self.whole;
         let parent = above.map_or(&whole.part, |stem| &stems[stem].part);
         let (columns, sorted) = (&mut level.part.columns, &mut level.sorted);
-        let place = Place { region: self.tree.region(node), points: &[] };
-        sort(self.simd, &parent.columns, place, columns, sorted);
+        let domain = Domain { region: self.tree.region(node), points: &[] };
+        sort(self.simd, &parent.columns, domain, columns, sorted);
         // In the worst case all rows stay open.
         let rows = whole.rows() + WIDTH * whole.heads.groups;
         let bytes = columns.len * rows * size_of::<f32>();
@@ -155,7 +147,7 @@ impl Walk<'_> {
         let mut needed = vec![false; stems.len()];
         for (Top { node, above, .. }, level) in nodes.iter().zip(&mut tops[..]) {
             let parent = above.map_or(&self.whole.part, |stem| &stems[stem].part);
-            level.begin(self.simd, parent, self.place(*node, all_rows), panels);
+            level.begin(self.simd, parent, self.domain(*node, all_rows), panels);
             let mut stem = *above;
             while let Some(at) = stem {
                 needed[at] = true;
@@ -174,7 +166,7 @@ impl Walk<'_> {
             }
             for (Top { node, above, .. }, level) in nodes.iter().zip(&mut tops[..]) {
                 let rows = above.map_or(rows, |above| rows.with(&affines[above]));
-                level.absorb(self.simd, &self.whole.heads, rows, self.place(*node, all_rows));
+                level.absorb(self.simd, &self.whole.heads, rows, self.domain(*node, all_rows));
             }
         }
         let mut tasks = Vec::new();
@@ -183,20 +175,20 @@ impl Walk<'_> {
         }
         for_each_block(&mut tasks, 1, |_, task| {
             let mut workspace = self.workspace();
-            let Workspace { levels, activations, .. } = &mut workspace;
+            let Workspace { levels, neurons, .. } = &mut workspace;
             levels.resize_with(usize::BITS as usize, Level::default);
             let (node, part) = task[0];
-            self.descend(node, part, levels, activations, stop);
+            self.descend(node, part, levels, neurons, stop);
             self.keep(workspace);
         });
         self.keep(workspace);
     }
 
     /// Where the points of a node are, which is made from so many rows: the more, the sooner it is worth looking at each point.
-    fn place(&self, node: Node, rows: usize) -> Place<'_> {
+    fn domain(&self, node: Node, rows: usize) -> Domain<'_> {
         let points = self.tree.points(node);
         let worth = node.count == 1 || points.len() <= rows / 2;
-        Place { region: self.tree.region(node), points: if worth { points } else { &[] } }
+        Domain { region: self.tree.region(node), points: if worth { points } else { &[] } }
     }
 
     fn workspace(&self) -> Workspace {
@@ -215,33 +207,33 @@ impl Walk<'_> {
         node: Node,
         parent: &Part,
         levels: &mut [Level],
-        activations: &mut Activations,
+        neurons: &mut Neurons,
         stop: &(dyn Fn() -> bool + Sync),
     ) {
         let (level, levels) =
             levels.split_first_mut().expect("a tree has fewer levels than a number has bits");
         if node.count == 1 {
-            return self.leaf(node, parent, level, activations);
+            return self.leaf(node, parent, level, neurons);
         }
         if stop() {
             return;
         }
-        let place = self.place(node, parent.rows.ids.len());
-        level.begin(self.simd, parent, place, parent.rows.panels());
-        level.absorb(self.simd, &self.whole.heads, parent.rows.all(), place);
-        below(node, |child| self.descend(child, &level.part, levels, activations, stop));
+        let domain = self.domain(node, parent.rows.ids.len());
+        level.begin(self.simd, parent, domain, parent.rows.panels());
+        level.absorb(self.simd, &self.whole.heads, parent.rows.all(), domain);
+        below(node, |child| self.descend(child, &level.part, levels, neurons, stop));
     }
 
-    fn leaf(&self, node: Node, parent: &Part, level: &mut Level, activations: &mut Activations) {
+    fn leaf(&self, node: Node, parent: &Part, level: &mut Level, neurons: &mut Neurons) {
         let first = node.first * LEAF;
         let rows = self.order.rows(self.tree, first..(first + LEAF).min(self.tree.len()));
         let mut ahead = rows.clone();
         let mut prefetch = || ahead.by_ref().take(AHEAD).for_each(|row| self.logits.prefetch(row));
-        let place = self.place(node, parent.rows.ids.len());
+        let domain = self.domain(node, parent.rows.ids.len());
         prefetch();
-        level.begin(self.simd, parent, place, 0);
+        level.begin(self.simd, parent, domain, 0);
         prefetch();
-        level.resolve(self.simd, &self.whole.heads, parent.rows.all(), place);
+        level.resolve(self.simd, &self.whole.heads, parent.rows.all(), domain);
         prefetch();
         prefetch();
         // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
@@ -253,7 +245,7 @@ impl Walk<'_> {
         for (block, x) in x.iter_mut().enumerate() {
             *x = self.tree.block(first + WIDTH * block);
         }
-        leaf::evaluate(self.simd, level, &self.whole.heads, x, activations, &mut logits[..count]);
+        leaf::evaluate(self.simd, level, &self.whole.heads, x, neurons, &mut logits[..count]);
     }
 
     fn dense(&self, node: Node) {

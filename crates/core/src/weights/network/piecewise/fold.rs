@@ -1,7 +1,7 @@
 //! Neurons that are on become part of the output's affine map.
 
 use super::columns::Sorted;
-use super::node::{Heads, Part};
+use super::part::{Heads, Part};
 use super::rows::{loads, stores, Bounded, COLUMNS};
 use crate::machine::simd::{multiversion, Aligned, Lanes, WIDTH};
 

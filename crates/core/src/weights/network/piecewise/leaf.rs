@@ -3,7 +3,8 @@
 //! Neurons are evaluated with points in lanes, some rows of layer 2 and all points at a time, so that a weight that was loaded
 //! serves them all. Logits are added up with outputs in lanes, some points at a time: so they come out point by point.
 
-use super::node::{Heads, Level};
+use super::node::Level;
+use super::part::Heads;
 use super::rows::{loads, Row};
 use crate::geometry::LEAF_BLOCKS;
 use crate::machine::simd::{multiversion, Aligned, Lanes, WIDTH};
@@ -24,7 +25,7 @@ const APART: usize = 64;
 
 /// Scratch of [`evaluate`]: what the open neurons of both layers are at each point.
 #[derive(Default)]
-pub(super) struct Activations {
+pub(super) struct Neurons {
     hidden: Vec<Points>,
     rows: Vec<Points>,
 }
@@ -35,7 +36,7 @@ multiversion! {
         leaf: &Level,
         heads: &Heads,
         x: &[[Aligned; 3]],
-        activations: &mut Activations,
+        neurons: &mut Neurons,
         logits: &mut [&mut [f32]],
     ) = evaluate_body
 }
@@ -45,31 +46,31 @@ fn evaluate_body<L: Lanes>(
     leaf: &Level,
     heads: &Heads,
     x: &[[Aligned; 3]],
-    activations: &mut Activations,
+    neurons: &mut Neurons,
     logits: &mut [&mut [f32]],
 ) {
     let (columns, rows) = (leaf.sorted.open.len, leaf.bounded.open.len());
-    let Activations { hidden: h, rows: z } = activations;
+    let Neurons { hidden: h, rows: z } = neurons;
     h.resize(columns.max(h.len()), NO_POINTS);
     z.resize(rows.next_multiple_of(ROWS).max(z.len()), NO_POINTS);
     let (h, z) = (&mut h[..columns], &mut z[..rows.next_multiple_of(ROWS)]);
     if L::REGISTERS >= 32 && x.len() == LEAF_BLOCKS {
-        neurons::<L, LEAF_BLOCKS>(leaf, x, 0, h, z);
+        evaluate_neurons::<L, LEAF_BLOCKS>(leaf, x, 0, h, z);
     } else {
-        (0..x.len()).for_each(|block| neurons::<L, 1>(leaf, x, block, h, z));
+        (0..x.len()).for_each(|block| evaluate_neurons::<L, 1>(leaf, x, block, h, z));
     }
 
-    let sources = Sources { leaf, heads, x, hidden: h, rows: z };
+    let terms = Terms { leaf, heads, x, hidden: h, rows: z };
     for (group, output) in leaf.part.output.iter().enumerate() {
         let output = loads::<L>(output);
         let mut first = 0;
         while first < logits.len() {
             first += if L::REGISTERS >= 32 && first + MANY <= logits.len() {
-                sources.add_up::<L, MANY>(group, output, first, logits)
+                terms.add_up::<L, MANY>(group, output, first, logits)
             } else if first + FEW <= logits.len() {
-                sources.add_up::<L, FEW>(group, output, first, logits)
+                terms.add_up::<L, FEW>(group, output, first, logits)
             } else {
-                sources.add_up::<L, 1>(group, output, first, logits)
+                terms.add_up::<L, 1>(group, output, first, logits)
             };
         }
     }
@@ -77,7 +78,7 @@ fn evaluate_body<L: Lanes>(
 
 /// The neurons at `B` blocks of points.
 #[inline(always)]
-fn neurons<L: Lanes, const B: usize>(
+fn evaluate_neurons<L: Lanes, const B: usize>(
     leaf: &Level,
     x: &[[Aligned; 3]],
     first: usize,
@@ -146,7 +147,7 @@ fn affine<L: Lanes>(map: [f32; 4], x: [L; 3]) -> L {
 }
 
 /// What logits are made of.
-struct Sources<'a> {
+struct Terms<'a> {
     leaf: &'a Level,
     heads: &'a Heads,
     x: &'a [[Aligned; 3]],
@@ -154,7 +155,7 @@ struct Sources<'a> {
     rows: &'a [Points],
 }
 
-impl Sources<'_> {
+impl Terms<'_> {
     /// Outputs of one group at `P` points from `first` on, all of one block. Returns `P`.
     #[inline(always)]
     fn add_up<L: Lanes, const P: usize>(

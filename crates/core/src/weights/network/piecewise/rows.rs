@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::bounds::{bounds, bounds_at, classify, Place, MANY};
+use super::bounds::{bounds, bounds_at, classify, Domain, MANY};
 use super::columns::{Columns, Sorted};
-use super::planes::Planes;
+use super::lane_list::LaneList;
 use crate::machine::memory::filled;
 use crate::machine::simd::{multiversion, Aligned, Lanes, WIDTH};
 
@@ -126,9 +126,9 @@ pub(super) struct Bounded {
     /// Columns of it, with those that fill the last few, where anything may be.
     columns: usize,
     /// Of each open row an affine map, how far the row may be from it, and the bits of its place in the block.
-    relaxed: Planes<6>,
+    relaxed: LaneList<6>,
     /// The bits of the places of the rows that are on.
-    places: Planes<1>,
+    places: LaneList<1>,
 }
 
 /// Columns of a [`Bounded`] are a multiple of this.
@@ -200,13 +200,13 @@ multiversion! {
     pub(super) fn bound(
         block: Block<'_>,
         sorted: &Sorted,
-        place: Place<'_>,
+        domain: Domain<'_>,
         bounded: &mut Bounded,
     ) = bound_body
 }
 
 #[inline(always)]
-fn bound_body<L: Lanes>(block: Block<'_>, sorted: &Sorted, place: Place<'_>, bounded: &mut Bounded) {
+fn bound_body<L: Lanes>(block: Block<'_>, sorted: &Sorted, domain: Domain<'_>, bounded: &mut Bounded) {
     bounded.affine.clear();
     bounded.on.clear();
     bounded.open.clear();
@@ -219,35 +219,35 @@ fn bound_body<L: Lanes>(block: Block<'_>, sorted: &Sorted, place: Place<'_>, bou
     // Several panels at a time, so that there are more sums than an addition takes cycles: as many as there are registers for.
     while p < panels {
         p += match panels - p {
-            3 | 5.. if L::REGISTERS >= 32 => bound_panels::<L, 3>(block, p, sorted, place, bounded),
-            1 => bound_panels::<L, 1>(block, p, sorted, place, bounded),
-            _ => bound_panels::<L, 2>(block, p, sorted, place, bounded),
+            3 | 5.. if L::REGISTERS >= 32 => bound_panels::<L, 3>(block, p, sorted, domain, bounded),
+            1 => bound_panels::<L, 1>(block, p, sorted, domain, bounded),
+            _ => bound_panels::<L, 2>(block, p, sorted, domain, bounded),
         };
     }
-    if !place.points.is_empty() && sorted.open.len >= MANY {
-        bound_at::<L>(place, bounded);
+    if !domain.points.is_empty() && sorted.open.len >= MANY {
+        bound_at::<L>(domain, bounded);
     }
     let Bounded { on, open, relaxed, places, .. } = bounded;
     for (rows, places) in [(on, places.plane(0)), (open, relaxed.plane(5))] {
-        rows.extend(places.iter().map(|place| {
-            let place = place.to_bits();
-            Row { panel: place / WIDTH as u32, lane: place % WIDTH as u32, id: block.ids[place as usize] }
+        rows.extend(places.iter().map(|domain| {
+            let domain = domain.to_bits();
+            Row { panel: domain / WIDTH as u32, lane: domain % WIDTH as u32, id: block.ids[domain as usize] }
         }));
     }
 }
 
 /// Of the rows that the box leaves open, those that the points leave open stay so.
 #[inline(always)]
-fn bound_at<L: Lanes>(here: Place<'_>, bounded: &mut Bounded) {
+fn bound_at<L: Lanes>(here: Domain<'_>, bounded: &mut Bounded) {
     let Bounded { relaxed, places, .. } = bounded;
     let left = std::mem::take(&mut relaxed.len);
     for first in (0..left).step_by(WIDTH) {
         let row = relaxed.load::<L>(first);
-        let [a, b, c, d, spread, place] = row;
+        let [a, b, c, d, spread, domain] = row;
         let (lower, upper) = bounds_at([a, b, c, d], spread, here);
         let [on, open] = classify(lower, upper);
         let rows = u32::MAX >> (32 - WIDTH.min(left - first));
-        places.append(on & rows, [place]);
+        places.append(on & rows, [domain]);
         // What is written is not beyond what was loaded.
         relaxed.append(open & rows, row);
     }
@@ -259,7 +259,7 @@ fn bound_panels<L: Lanes, const P: usize>(
     block: Block<'_>,
     first: usize,
     sorted: &Sorted,
-    place: Place<'_>,
+    domain: Domain<'_>,
     bounded: &mut Bounded,
 ) -> usize {
     let (matrix, mut maps) = panels::<L, P>(block, first);
@@ -286,7 +286,7 @@ fn bound_panels<L: Lanes, const P: usize>(
         }
     }
     for p in 0..P {
-        let (lower, upper) = bounds(maps[p], spreads[p], place.region);
+        let (lower, upper) = bounds(maps[p], spreads[p], domain.region);
         let [on, open] = classify(lower, upper);
         // The last panel may have lanes without rows.
         let before = WIDTH * (first + p);

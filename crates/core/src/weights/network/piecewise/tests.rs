@@ -5,7 +5,7 @@ use crate::geometry::Frame;
 use crate::geometry::{Order, PointTree};
 use crate::machine::random::Random;
 use crate::machine::simd::Simd;
-use crate::weights::network::network::tests::naive;
+use crate::weights::network::mlp::tests::naive;
 use crate::weights::network::{fit, train, Network, Schedule, Training};
 
 fn untrained(dim: usize, width: usize, m: usize) -> Network {
@@ -33,7 +33,16 @@ fn tree(network: &Network, x: &[f64]) -> PointTree {
 fn logits_on(simd: Simd, network: &Network, x: &[f64]) -> Vec<f32> {
     let tree = tree(network, x);
     let mut logits = vec![f32::NAN; tree.len() * network.outputs()];
-    super::write_logits(simd, network, &tree, Order::Given, &mut logits, &mut |_| true).unwrap();
+    super::write_logits(
+        simd,
+        &network.parameters,
+        &network.prepared,
+        &tree,
+        Order::Given,
+        &mut logits,
+        &mut |_| true,
+    )
+    .unwrap();
     logits
 }
 

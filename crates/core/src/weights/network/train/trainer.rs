@@ -5,8 +5,7 @@ use super::super::adam::{Rates, DUST};
 use super::super::first::First;
 use super::super::gemm;
 use super::super::linear::Linear;
-use super::super::network::{relu, Layer, Network};
-use super::super::piecewise::Prepared;
+use super::super::parameters::{relu, Layer, Parameters};
 use super::super::samples::Lessons;
 use crate::machine::parallel::for_each_block_pair;
 use crate::machine::simd::{Aligned, WIDTH};
@@ -23,7 +22,7 @@ pub(super) struct Losses {
 
 /// The network with what one step needs.
 pub(super) struct Trainer {
-    network: Network,
+    network: Parameters,
     first: First,
     middle: Linear,
     last: Linear,
@@ -41,9 +40,9 @@ pub(super) struct Trainer {
 }
 
 impl Trainer {
-    pub(super) fn new(network: Network, mut lessons: Lessons) -> Trainer {
+    pub(super) fn new(network: Parameters, mut lessons: Lessons) -> Trainer {
         let features = network.features(&lessons.points);
-        let [a, b, c] = network.layers();
+        let [a, b, c] = &network.layers;
         let every: Vec<usize> = (0..features.len() / a.inputs()).collect();
         let everywhere = activations(a, &columns(&features, a.inputs(), &every), every.len());
         // A neuron that fires for no point has no gradient, and so never will.
@@ -138,9 +137,7 @@ impl Trainer {
         self.activations = [next_first, next_second, logits];
     }
 
-    pub(super) fn finish(mut self) -> Network {
-        // Laid out, if at all, from the parameters that it had.
-        self.network.prepared = Prepared::default();
+    pub(super) fn finish(mut self) -> Parameters {
         let [a, b, c] = &mut self.network.layers;
         self.first.store(a);
         self.middle.store(b);

@@ -1,6 +1,8 @@
 //! The network and its evaluation.
 
-use super::{dense, features, piecewise};
+use super::dense;
+use super::parameters::{Layer, Parameters};
+use super::piecewise::{self, Prepared};
 use crate::check::check_points;
 use crate::error::Error;
 use crate::geometry::Frame;
@@ -9,35 +11,17 @@ use crate::machine::memory::{in_large_pages, zeros};
 use crate::machine::progress::{report, Progress};
 use crate::machine::simd::Simd;
 
-/// One linear layer: `y = W x + b`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Layer {
-    /// `W`, row by row: outputs x inputs.
-    pub weight: Vec<f32>,
-    /// `b`, one a row.
-    pub bias: Vec<f32>,
-}
-
-impl Layer {
-    /// Numbers that come out.
-    pub fn outputs(&self) -> usize {
-        self.bias.len()
-    }
-
-    /// Numbers that go in.
-    pub fn inputs(&self) -> usize {
-        self.weight.len() / self.bias.len()
-    }
-}
-
 /// An MLP of three linear layers with ReLU between them, and the frame that its inputs are normalised by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Network {
-    pub(super) dim: usize,
-    pub(super) frame: Frame,
-    pub(super) frequencies: Vec<f32>,
-    pub(super) layers: [Layer; 3],
-    pub(super) prepared: piecewise::Prepared,
+    pub(super) parameters: Parameters,
+    pub(super) prepared: Prepared,
+}
+
+impl From<Parameters> for Network {
+    fn from(parameters: Parameters) -> Network {
+        Network { parameters, prepared: Prepared::default() }
+    }
 }
 
 impl Network {
@@ -51,60 +35,40 @@ impl Network {
         frequencies: Vec<f32>,
         layers: [Layer; 3],
     ) -> Result<Network, Error> {
-        check_points("network", &[], dim)?;
-        let mut inputs = features::width(dim, &frequencies);
-        let whole = frequencies.len().is_multiple_of(dim);
-        for (index, layer) in layers.iter().enumerate() {
-            if !whole || layer.bias.is_empty() || layer.weight.len() != layer.bias.len() * inputs {
-                return Err(Error::argument(
-                    "network",
-                    format!(
-                        "layer {} has {} weights and {} biases, which do not fit its {inputs} inputs",
-                        index + 1,
-                        layer.weight.len(),
-                        layer.bias.len()
-                    ),
-                ));
-            }
-            inputs = layer.outputs();
-        }
-        let numbers = || layers.iter().flat_map(|l| l.weight.iter().chain(&l.bias)).chain(&frequencies);
-        if numbers().any(|v| !v.is_finite()) {
-            return Err(Error::argument("network", "a parameter is not finite"));
-        }
-        Ok(Network { dim, frame, frequencies, layers, prepared: piecewise::Prepared::default() })
+        Parameters::new(dim, frame, frequencies, layers).map(Network::from)
     }
 
     /// The same network with logits `by` times as large.
-    pub(crate) fn sharpened(mut self, by: f32) -> Network {
-        let Layer { weight, bias } = &mut self.layers[2];
+    pub(crate) fn sharpened(self, by: f32) -> Network {
+        let mut parameters = self.parameters;
+        let Layer { weight, bias } = &mut parameters.layers[2];
         weight.iter_mut().chain(bias).for_each(|parameter| *parameter *= by);
-        Network { prepared: piecewise::Prepared::default(), ..self }
+        Network::from(parameters)
     }
 
     /// Coordinates a point.
     pub fn dim(&self) -> usize {
-        self.dim
+        self.parameters.dim
     }
 
     /// Control points, m.
     pub fn outputs(&self) -> usize {
-        self.layers[2].outputs()
+        self.parameters.outputs()
     }
 
     /// The frame that points are normalised by.
     pub fn frame(&self) -> &Frame {
-        &self.frame
+        &self.parameters.frame
     }
 
     /// `B` of the Fourier features, row by row; empty without them.
     pub fn frequencies(&self) -> &[f32] {
-        &self.frequencies
+        &self.parameters.frequencies
     }
 
     /// The three linear layers.
     pub fn layers(&self) -> &[Layer; 3] {
-        &self.layers
+        &self.parameters.layers
     }
 
     /// The logits of the points `x`, row by row: n x m.
@@ -112,11 +76,12 @@ impl Network {
     /// # Errors
     /// [`Error::Cancelled`], or where `x` does not hold finite points of the network's dimension.
     pub fn logits(&self, x: &[f64], progress: &mut Progress<'_>) -> Result<Vec<f32>, Error> {
-        if !self.frequencies.is_empty() || x.len() <= LEAF * self.dim {
-            check_points("x", x, self.dim)?;
-            return dense::logits(self, x, progress);
+        if !self.parameters.frequencies.is_empty() || x.len() <= LEAF * self.parameters.dim {
+            check_points("x", x, self.parameters.dim)?;
+            return dense::logits(&self.parameters, x, progress);
         }
-        let tree = PointTree::new(x, self.dim, self.frame, &mut |done| progress(0.5 * done))?;
+        let tree =
+            PointTree::new(x, self.parameters.dim, self.parameters.frame, &mut |done| progress(0.5 * done))?;
         self.logits_of_tree(&tree, &mut |done| progress(0.5 + 0.5 * done))
     }
 
@@ -145,7 +110,7 @@ impl Network {
         logits: &mut [f32],
         progress: &mut Progress<'_>,
     ) -> Result<(), Error> {
-        if tree.dim() != self.dim || *tree.frame() != self.frame {
+        if tree.dim() != self.parameters.dim || *tree.frame() != self.parameters.frame {
             let message = "expected one in the dimension and the frame of the network, found another";
             return Err(Error::argument("tree", message));
         }
@@ -155,28 +120,20 @@ impl Network {
             return Err(Error::argument("logits", message));
         }
         report(progress, 0.0)?;
-        if self.frequencies.is_empty() {
-            piecewise::write_logits(Simd::detect(), self, tree, order, logits, progress)?;
+        if self.parameters.frequencies.is_empty() {
+            piecewise::write_logits(
+                Simd::detect(),
+                &self.parameters,
+                &self.prepared,
+                tree,
+                order,
+                logits,
+                progress,
+            )?;
         } else {
-            dense::write_logits(self, tree, order, logits, progress)?;
+            dense::write_logits(&self.parameters, tree, order, logits, progress)?;
         }
         report(progress, 1.0)
-    }
-
-    /// What the first layer sees of `x`.
-    pub(super) fn features(&self, x: &[f64]) -> Vec<f32> {
-        let mut out = Vec::with_capacity(x.len() / self.dim * features::width(self.dim, &self.frequencies));
-        for point in x.chunks_exact(self.dim) {
-            let normalised = self.frame.enter_single(point);
-            features::append(&normalised[..self.dim], &self.frequencies, &mut out);
-        }
-        out
-    }
-}
-
-pub(super) fn relu(values: &mut [f32]) {
-    for v in values {
-        *v = v.max(0.0);
     }
 }
 

@@ -1,25 +1,25 @@
-//! Lists that grow by some lanes of a register at a time.
+//! Lists that grow by some lanes of a register at a time: a structure of arrays.
 
 use crate::machine::simd::{Lanes, WIDTH};
 
 /// A list of `N` numbers each, side by side in `N` planes.
-pub(super) struct Planes<const N: usize> {
+pub(super) struct LaneList<const N: usize> {
     pub len: usize,
     /// Longer than the list.
     planes: [Vec<f32>; N],
 }
 
-impl<const N: usize> Default for Planes<N> {
+impl<const N: usize> Default for LaneList<N> {
     fn default() -> Self {
-        Planes { len: 0, planes: std::array::from_fn(|_| Vec::new()) }
+        LaneList { len: 0, planes: std::array::from_fn(|_| Vec::new()) }
     }
 }
 
-impl<const N: usize> Clone for Planes<N> {
+impl<const N: usize> Clone for LaneList<N> {
     /// Without the room that is not needed.
     fn clone(&self) -> Self {
         let room = room(self.len);
-        Planes { len: self.len, planes: std::array::from_fn(|k| self.planes[k][..room].to_vec()) }
+        LaneList { len: self.len, planes: std::array::from_fn(|k| self.planes[k][..room].to_vec()) }
     }
 }
 
@@ -28,7 +28,7 @@ fn room(len: usize) -> usize {
     len.next_multiple_of(WIDTH) + WIDTH
 }
 
-impl<const N: usize> Planes<N> {
+impl<const N: usize> LaneList<N> {
     /// An empty list, with room for `count`.
     pub(super) fn clear(&mut self, count: usize) {
         self.len = 0;
@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn lanes_are_appended_one_after_the_other() {
-        let mut list = Planes::<2>::default();
+        let mut list = LaneList::<2>::default();
         list.clear(20);
         let numbers: [f32; WIDTH] = std::array::from_fn(|i| i as f32);
         let (a, b) = (Portable::load(&numbers), Portable::splat(7.0));

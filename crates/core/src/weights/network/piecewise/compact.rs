@@ -5,14 +5,14 @@ use crate::machine::simd::{multiversion, Aligned, Lanes, WIDTH};
 
 multiversion! {
     /// Appends the open rows of a block to those of a child, with their open columns.
-    pub(super) fn keep(bounded: &Bounded, rows: &mut Rows) = keep_body
+    pub(super) fn compact(bounded: &Bounded, rows: &mut Rows) = compact_body
 }
 
 /// Panels that rows are taken from at a time.
 const SOURCES: usize = 3;
 
 #[inline(always)]
-fn keep_body<L: Lanes>(bounded: &Bounded, rows: &mut Rows) {
+fn compact_body<L: Lanes>(bounded: &Bounded, rows: &mut Rows) {
     let mut rest = &bounded.open[..];
     while !rest.is_empty() {
         let place = rows.ids.len() % WIDTH;

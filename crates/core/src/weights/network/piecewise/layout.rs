@@ -1,13 +1,14 @@
 //! The whole network, laid out as a node that has everything open.
 
-use std::sync::{Mutex, OnceLock};
+use std::sync::{Arc, Mutex};
 
 use super::columns::Columns;
-use super::evaluate::Workspace;
-use super::node::{Heads, Part};
+use super::part::{Heads, Part};
 use super::rows::{Block, Rows};
+use super::workspace::Workspace;
 use crate::machine::simd::{Aligned, WIDTH};
-use crate::weights::network::network::Network;
+use crate::machine::threads::briefly;
+use crate::weights::network::parameters::Parameters;
 
 /// Panels of layer 2 that are gone through at a time: so few that they stay in the cache.
 pub(super) const PACK: usize = 4;
@@ -26,17 +27,19 @@ pub(super) struct Whole {
 
 /// What the first evaluation of a network lays out for all later ones. It is no part of what the network is.
 #[derive(Default)]
-pub(in crate::weights::network) struct Prepared(OnceLock<Whole>);
+pub(in crate::weights::network) struct Prepared(Mutex<Option<Arc<Whole>>>);
 
 impl Prepared {
-    pub(super) fn of(network: &Network) -> &Whole {
-        let prepared = &network.prepared.0;
-        if let Some(whole) = prepared.get() {
+    pub(super) fn of(&self, network: &Parameters) -> Arc<Whole> {
+        if let Some(whole) = briefly(&self.0).and_then(|kept| kept.clone()) {
             return whole;
         }
         // Made outside of the lock: while this thread waits for others, it may take up another evaluation of the same network.
-        let whole = Whole::new(network);
-        prepared.get_or_init(|| whole)
+        let whole = Arc::new(Whole::new(network));
+        match briefly(&self.0) {
+            Some(mut kept) => kept.get_or_insert(whole).clone(),
+            None => whole,
+        }
     }
 }
 
@@ -59,9 +62,9 @@ impl std::fmt::Debug for Prepared {
 }
 
 impl Whole {
-    pub(super) fn new(network: &Network) -> Whole {
-        let [layer1, layer2, layer3] = network.layers();
-        let dim = network.dim();
+    pub(super) fn new(network: &Parameters) -> Whole {
+        let [layer1, layer2, layer3] = &network.layers;
+        let dim = network.dim;
         let mut columns = Columns::default();
         columns.clear(layer1.outputs());
         columns.len = layer1.outputs();
@@ -99,7 +102,12 @@ impl Whole {
     }
 
     /// Rows of layer 2 from panel `first` on, [`PACK`] panels of them or what is left: laid out already, or now, in `scratch`.
-    pub(super) fn panels<'a>(&'a self, network: &Network, first: usize, scratch: &'a mut Rows) -> Block<'a> {
+    pub(super) fn panels<'a>(
+        &'a self,
+        network: &Parameters,
+        first: usize,
+        scratch: &'a mut Rows,
+    ) -> Block<'a> {
         let count = PACK.min(self.rows().div_ceil(WIDTH) - first);
         if self.part.rows.panels() > 0 {
             return self.part.rows.block(first..first + count);
@@ -110,8 +118,8 @@ impl Whole {
 }
 
 /// Lays out `count` panels of layer 2 from panel `first` on.
-fn pack(network: &Network, first: usize, count: usize, rows: &mut Rows) {
-    let layer = &network.layers()[1];
+fn pack(network: &Parameters, first: usize, count: usize, rows: &mut Rows) {
+    let layer = &network.layers[1];
     let (columns, first) = (layer.inputs(), WIDTH * first);
     let last = (first + WIDTH * count).min(layer.outputs());
     rows.clear(columns, 0);

@@ -7,24 +7,26 @@ use proptest::prelude::*;
 fn network(dim: usize, width: usize, m: usize, sigma: Option<f64>) -> Network {
     let mut random = Random::new(5);
     let frequencies = sigma.map_or(Vec::new(), |sigma| random.frequencies(dim, sigma));
-    let inputs = features::width(dim, &frequencies);
+    let inputs = crate::weights::network::features::width(dim, &frequencies);
     let layers = [random.layer(inputs, width), random.layer(width, width), random.layer(width, m)];
     let frame = Frame { centre: [1.0, 2.0, 3.0], half: 2.0 };
     Network::new(dim, frame, frequencies, layers).unwrap()
 }
 
 pub(in crate::weights::network) fn naive(network: &Network, x: &[f64]) -> Vec<f64> {
-    let dim = network.dim;
-    let mut values: Vec<f64> =
-        (0..dim).map(|k| (x[k] - network.frame.centre[k]) / network.frame.half).collect();
+    let dim = network.parameters.dim;
+    let mut values: Vec<f64> = (0..dim)
+        .map(|k| (x[k] - network.parameters.frame.centre[k]) / network.parameters.frame.half)
+        .collect();
     let angles: Vec<f64> = network
+        .parameters
         .frequencies
         .chunks(dim)
         .map(|b| std::f64::consts::TAU * b.iter().zip(&values).map(|(b, x)| f64::from(*b) * x).sum::<f64>())
         .collect();
     values.extend(angles.iter().map(|a| a.sin()));
     values.extend(angles.iter().map(|a| a.cos()));
-    for (index, layer) in network.layers.iter().enumerate() {
+    for (index, layer) in network.parameters.layers.iter().enumerate() {
         values = layer
             .weight
             .chunks(layer.inputs())
@@ -64,6 +66,19 @@ fn a_point_gets_the_same_logits_whatever_is_evaluated_with_it() {
         for (a, b) in alone.iter().zip(&all[5 * i..]) {
             assert!((a - b).abs() < 2e-5, "point {i}: {a} {b}");
         }
+    }
+}
+
+/// Threads fill rows of one matrix.
+#[test]
+fn a_tree_gets_the_dense_logits_of_its_points_in_their_own_order() {
+    let network = network(2, 8, 3, Some(0.7));
+    let points = if cfg!(miri) { 140 } else { 5000 };
+    let x: Vec<f64> = (0..2 * points).map(|i| (f64::from(i) * 0.37).sin()).collect();
+    let tree = PointTree::new(&x, 2, *network.frame(), &mut |_| true).unwrap();
+    let one_by_one = network.logits(&x, &mut |_| true).unwrap();
+    for (a, b) in network.logits_of_tree(&tree, &mut |_| true).unwrap().iter().zip(&one_by_one) {
+        assert!((a - b).abs() < 1e-5, "{a} {b}");
     }
 }
 

@@ -1,0 +1,184 @@
+//! Maps: what a fitted session does, says, and keeps.
+
+use neuralmls_session::{
+    read, Bounds, ControlPoint, ControlPoints, ErrorKind, HandlesSetting, Held, Map, Orientation, Session,
+    Settings, Transform, WeightsSettings,
+};
+
+const CORNERS: [[f64; 3]; 5] =
+    [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.2, -0.8, -0.5]];
+
+fn session(weights: WeightsSettings) -> Session {
+    let list =
+        CORNERS.iter().enumerate().map(|(i, at)| ControlPoint::new(format!("p{}", i + 1), at.to_vec()));
+    let mut session = Session::new(ControlPoints::new(3, list.collect()).unwrap());
+    session.settings.weights = weights;
+    session
+}
+
+fn neural() -> WeightsSettings {
+    WeightsSettings::Neural { width: 64, steps: None, seed: 0, rate: 6e-4, fourier_sigma: None }
+}
+
+fn classic() -> WeightsSettings {
+    WeightsSettings::InverseDistance { alpha: 1.0, epsilon: 0.0 }
+}
+
+fn fitted(session: &Session) -> Map {
+    let bounds = Bounds::new(vec![-1.0; 3], vec![1.0; 3], 3).unwrap();
+    session.fit(Some(&bounds), &mut |_| true).unwrap()
+}
+
+fn places() -> Vec<f64> {
+    (0..300).map(|i| (f64::from(i) * 0.7).sin()).collect()
+}
+
+fn moved(session: &Session, name: &str, by: [f64; 3]) -> Session {
+    Session { points: session.points.moved(name, &by).unwrap(), ..session.clone() }
+}
+
+#[test]
+fn unmoved_control_points_return_every_place_bit_for_bit() {
+    for weights in [neural(), classic()] {
+        let map = fitted(&session(weights));
+        assert_eq!(map.at(&places(), &mut |_| true).unwrap(), places());
+    }
+}
+
+#[test]
+fn a_saved_map_is_the_same_map_to_the_bit() {
+    for weights in [neural(), classic()] {
+        let map = fitted(&moved(&session(weights), "p3", [0.1, 0.4, 0.0]));
+        let again = Map::from_bytes(&map.to_bytes()).unwrap();
+        assert_eq!(again.session(), map.session());
+        assert_eq!(again.weights(), map.weights());
+        let x = places();
+        assert_eq!(again.at(&x, &mut |_| true).unwrap(), map.at(&x, &mut |_| true).unwrap());
+    }
+}
+
+#[test]
+fn a_session_keeps_the_frame_in_which_it_was_fitted() {
+    let map = fitted(&session(neural()));
+    let frame = map.session().frame.clone().unwrap();
+    assert_eq!((frame.min, frame.max), (vec![-1.0; 3], vec![1.0; 3]));
+    // Fitted again for another shape it is the same map of space.
+    let other = Bounds::new(vec![-9.0; 3], vec![9.0; 3], 3).unwrap();
+    let again = map.session().fit(Some(&other), &mut |_| true).unwrap();
+    assert_eq!(again.weights(), map.weights());
+}
+
+#[test]
+fn other_targets_and_settings_need_no_fit_and_other_weights_are_refused() {
+    let map = fitted(&session(neural()));
+    let further = moved(map.session(), "p1", [0.0, 0.5, 0.0]);
+    let settings = Settings { transform: Transform::Affine, temperature: 2.0, ..further.settings.clone() };
+    let with = map.with(Session { settings, ..further }).unwrap();
+    assert_eq!(with.weights(), map.weights());
+    assert_ne!(with.at(&places(), &mut |_| true).unwrap(), places());
+    let error = map.with(session(classic())).err().unwrap();
+    assert_eq!(error.kind, ErrorKind::Argument);
+    assert_eq!(error.message, "weights: the map was fitted with other weights");
+}
+
+#[test]
+fn handles_say_how_closely_control_points_arrive() {
+    let to = |handles: HandlesSetting| {
+        let mut session = moved(&session(neural()), "p3", [0.0, 0.3, 0.0]);
+        session.settings.handles = handles;
+        let map = fitted(&session);
+        let report = map.report(&map.aim().unwrap(), None).unwrap();
+        (report.control_points[2].distance_to_target, report.handles)
+    };
+    let (soft, said) = to(HandlesSetting::Soft);
+    assert_eq!(said, "soft");
+    let (half, said) = to(HandlesSetting::Part(0.5));
+    assert_eq!(said, "0.5 of the way");
+    let (auto, said) = to(HandlesSetting::Auto);
+    assert_eq!(said, "exact");
+    assert!(soft > 1e-3 && auto < 1e-6, "{soft} {auto}");
+    assert!((half - 0.5 * soft).abs() < 1e-6, "{half} of {soft}");
+}
+
+#[test]
+fn a_point_of_little_weight_is_met_less_closely() {
+    let with = |weight: f64| {
+        let session = moved(&session(neural()), "p3", [0.0, 0.3, 0.0]);
+        let mut list = session.points.into_list();
+        list[2].weight = weight;
+        let map = fitted(&Session::new(ControlPoints::new(3, list).unwrap()));
+        map.report(&map.aim().unwrap(), None).unwrap().control_points[2].distance_to_target
+    };
+    let (none, half, whole) = (with(0.0), with(0.5), with(1.0));
+    assert!(none > half && half > whole && whole < 1e-6, "{none} {half} {whole}");
+}
+
+#[test]
+fn what_a_file_cannot_hold_is_what_is_reported() {
+    let far = |c: &mut f64| *c += 5e6;
+    let mut list = session(classic()).points.into_list();
+    list.iter_mut().for_each(|point| point.position.iter_mut().chain(&mut point.target).for_each(far));
+    list[0].target[0] += 0.05;
+    let mut session = Session::new(ControlPoints::new(3, list).unwrap());
+    session.settings.weights = classic();
+    let map = session.fit(None, &mut |_| true).unwrap();
+    let round = |x: &[f64]| x.iter().map(|c| f64::from(*c as f32)).collect::<Vec<_>>();
+    let held = Held { format: "PLY", round: &round, step: 0.5 };
+    let report = map.report(&map.aim().unwrap(), Some(&held)).unwrap();
+    assert!((report.control_points[0].distance_to_target - 0.05).abs() < 1e-6);
+    assert!(
+        report.warnings[0].contains("this PLY file holds coordinates in steps of 0.5 here"),
+        "{report:?}"
+    );
+}
+
+#[test]
+fn the_angle_that_a_rotation_misses_is_told() {
+    let mut session = session(classic());
+    let quarter = Orientation::new([0.0, 0.0, 1.0], 90.0, 1.0).unwrap();
+    session.points = session.points.oriented("p2", quarter).unwrap();
+    let map = fitted(&session);
+    let report = map.report(&map.aim().unwrap(), None).unwrap();
+    let told = report.control_points[1].orientation.clone().unwrap();
+    assert_eq!((told.degrees, told.scale), (90.0, 1.0));
+    assert!(told.degrees_to_rotation < 1e-3, "{told:?}");
+    assert_eq!(report.control_points[0].orientation, None);
+}
+
+#[test]
+fn advice_names_a_fold_and_who_is_about_it() {
+    let p = read(b"name,x,y\na,0,0\nb,0.4,0.5\nc,0.6,0.5\nd,1,1\n", "p.csv").unwrap().session;
+    let mut session = Session { points: p.points.moved("b", &[0.5, 0.0]).unwrap(), ..p };
+    session.points = session.points.moved("c", &[-0.5, 0.0]).unwrap();
+    session.settings.weights = classic();
+    let map = session.fit(None, &mut |_| true).unwrap();
+    let x: Vec<f64> = (0..1000).flat_map(|i| [f64::from(i % 37) / 36.0, f64::from(i / 37) / 27.0]).collect();
+    let found = map.advise(&map.probe(&x, &[]).unwrap(), &mut || None).unwrap();
+    let fold = found.iter().find(|advice| advice.kind == "folds").unwrap();
+    assert!(fold.sentence.contains("of the shape is folded over, most of all near '"), "{}", fold.sentence);
+    assert!(fold.control_points.iter().all(|i| [1, 2].contains(i)), "{fold:?}");
+}
+
+#[test]
+fn files_that_are_no_maps_are_refused_in_a_sentence() {
+    let whole = fitted(&session(neural())).to_bytes();
+    let mut hostile: Vec<Vec<u8>> =
+        vec![Vec::new(), b"v 0 0 0\n".to_vec(), whole[..whole.len() / 2].to_vec()];
+    hostile.push((u64::MAX.to_le_bytes()).to_vec());
+    let (at, _) = whole.windows(7).enumerate().find(|(_, bytes)| bytes == b"weight0").unwrap();
+    let mut renamed = whole.clone();
+    renamed[at + 6] = b'9';
+    hostile.push(renamed);
+    for bytes in hostile {
+        let error = Map::from_bytes(&bytes).err().unwrap();
+        assert_eq!(error.kind, ErrorKind::File);
+        assert!(error.message.starts_with("this is no map that was saved by NeuralMLS: "), "{error}");
+        assert!(!error.message.contains('\n'));
+    }
+}
+
+#[test]
+fn shape_aware_weights_are_refused_where_no_shape_is_known() {
+    let error = session(WeightsSettings::ShapeAware { seed: 0 }).fit(None, &mut |_| true).err().unwrap();
+    assert!(error.message.contains("shape-aware weights are not fitted here yet"), "{error}");
+}
