@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import doctest
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -162,3 +164,12 @@ def test_advice_knows_of_turns(weights):
     wild = some(nm.Orientation((1, 0, 0), 170).matrix, [True, False] * 3)
     assert nm.advise(X, None, weights, p) == []
     assert nm.advise(X, None, weights, p, rotations=wild) != []
+
+
+def test_the_example_of_orientations_runs():
+    """It stands in Rust, where pytest finds no examples."""
+    example = doctest.DocTestParser().get_doctest(
+        nm.Orientation.__doc__, {"Orientation": nm.Orientation}, "Orientation", None, None
+    )
+    assert len(example.examples) >= 1
+    assert doctest.DocTestRunner().run(example).failed == 0

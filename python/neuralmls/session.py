@@ -260,7 +260,7 @@ class Map:
         Raises
         ------
         ArgumentError
-            They belong to other control points.
+            They are of another kind than the session's, or belong to other control points.
         """
         return cls._of(_core.Map.of(session._core, weights._core))
 

@@ -90,7 +90,7 @@ impl Map {
     /// The map of weights that were fitted already.
     ///
     /// # Errors
-    /// Where they belong to other control points.
+    /// Where they are of another kind, or belong to other control points.
     pub fn of(session: Session, weights: Weights) -> Result<Map, Error> {
         Map::over(session, Arc::new(weights))
     }
@@ -98,9 +98,15 @@ impl Map {
     /// The same, of weights that are shared.
     ///
     /// # Errors
-    /// Where they belong to other control points.
+    /// Where they are of another kind, or belong to other control points.
     pub fn over(session: Session, weights: Arc<Weights>) -> Result<Map, Error> {
         session.settings.check()?;
+        let (expected, found) = (session.settings.weights.kind(), weights.kind());
+        if found != expected {
+            return Err(Error::argument(format!(
+                "weights: the session has {expected} ones, found {found} ones"
+            )));
+        }
         if weights.control_points() != session.points.sources() {
             return Err(Error::argument("the weights were fitted to other control points at rest"));
         }

@@ -164,6 +164,9 @@ fn parse(bytes: &[u8]) -> Result<(Weights, Option<String>), Error> {
                 loss: arrays.number("loss")?,
                 control_points: p,
             };
+            if trained.losses.iter().chain([&trained.loss]).any(|loss| !loss.is_finite()) {
+                return Err(broken("losses: expected finite numbers"));
+            }
             if kind == "neural" {
                 Weights::Neural(trained)
             } else {

@@ -14,7 +14,9 @@ from neuralmls.cli.stages import Stages
 from neuralmls.errors import ArgumentError, FileError, NeuralMLSError
 
 if TYPE_CHECKING:
-    from neuralmls.deformer import Floats
+    import numpy as np
+    from numpy.typing import NDArray
+
     from neuralmls.session import Map, Session
     from neuralmls.shape import Shape
 
@@ -195,7 +197,7 @@ def _bent(shape: Shape, file: Path, map: Map, stages: Stages, *, check: bool, fo
 
 
 def _write(
-    shape: Shape, file: Path, positions: Floats, maps: Floats | None, *, force: bool
+    shape: Shape, file: Path, positions: NDArray[np.floating], maps: NDArray[np.float64] | None, *, force: bool
 ) -> tuple[list[str], list[str]]:
     """Write the shape; return the files written, and warnings of others that are kept or missing."""
     try:

@@ -19,6 +19,10 @@ const ROWS: usize = 4;
 const MANY: usize = 16;
 const FEW: usize = 4;
 
+/// Terms of a logit that are summed apart: hundreds onto one sum would each round to its size, and the logits of a place would differ
+/// from one box to another by more than they need to.
+const APART: usize = 64;
+
 /// Scratch of [`evaluate`]: what the open neurons of both layers are at each point.
 #[derive(Default)]
 pub(super) struct Neurons {
@@ -167,16 +171,38 @@ impl Terms<'_> {
         for k in 0..3 {
             add(&mut sum, output[k], &self.x[block][k], lane);
         }
-        for (weights, hidden) in leaf.part.through.chunks_exact(groups).zip(self.hidden) {
-            add(&mut sum, L::load(&weights[group].0), &hidden[block], lane);
+        let through = leaf.part.through.chunks(groups * APART);
+        for (weights, hidden) in through.zip(self.hidden.chunks(APART)) {
+            let mut apart = [L::splat(0.0); P];
+            for (weights, hidden) in weights.chunks_exact(groups).zip(hidden) {
+                add(&mut apart, L::load(&weights[group].0), &hidden[block], lane);
+            }
+            add_all(&mut sum, apart);
         }
-        for (Row { id, .. }, row) in leaf.bounded.open.iter().zip(self.rows) {
-            add(&mut sum, L::load(&self.heads.weights[*id as usize * groups + group].0), &row[block], lane);
+        for (open, rows) in leaf.bounded.open.chunks(APART).zip(self.rows.chunks(APART)) {
+            let mut apart = [L::splat(0.0); P];
+            for (Row { id, .. }, row) in open.iter().zip(rows) {
+                add(
+                    &mut apart,
+                    L::load(&self.heads.weights[*id as usize * groups + group].0),
+                    &row[block],
+                    lane,
+                );
+            }
+            add_all(&mut sum, apart);
         }
         for p in 0..P {
             sum[p].store_first(&mut logits[first + p][WIDTH * group..]);
         }
         P
+    }
+}
+
+/// Adds what was summed apart.
+#[inline(always)]
+fn add_all<L: Lanes, const P: usize>(sum: &mut [L; P], apart: [L; P]) {
+    for p in 0..P {
+        sum[p] = sum[p].add(apart[p]);
     }
 }
 
