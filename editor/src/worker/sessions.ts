@@ -1,7 +1,6 @@
 /** Sessions of the core, made of documents and of files. */
 
-import type { SessionDocument } from "../model/document.ts";
-import { settingsFrom, type SettingsEntry, type WeightsEntry } from "../model/document.ts";
+import { type SessionDocument, settingsFrom, type SettingsEntry, type WeightsEntry } from "../model/document.ts";
 import type { Weights, WeightsKind } from "../model/settings.ts";
 import { constants, defaultSettings, defaultWeights, Session } from "../wasm/neuralmls_wasm.js";
 import { CoreError, type Files, type ReadSession, type Rules } from "./protocol.ts";

@@ -61,6 +61,10 @@ test("drop, click, drag, undo, redo, mirror, temperature, save: the file is that
   // What the editor saves, the command line makes of the saved session; and the screen shows it.
   const saved = await save(editor, /^Bent OBJ/);
   const points = await save(editor, /^Control points/);
+  // The session says in which box its weights were fitted.
+  const places = vertices(chair);
+  const corner = (pick: (...values: number[]) => number) => [0, 1, 2].map((k) => places.filter((_, at) => at % 3 === k).reduce((a, b) => pick(a, b)));
+  expect(JSON.parse(points.bytes.toString()).frame).toEqual({ min: corner(Math.min), max: corner(Math.max) });
   writeFileSync(info.outputPath("session.json"), points.bytes);
   const bent = info.outputPath("bent.obj");
   command("deform", join(samples, "chair.obj"), "--points", info.outputPath("session.json"), "-o", bent, "-q");

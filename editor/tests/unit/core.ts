@@ -1,8 +1,7 @@
 /** The built core in Node, for tests of what is made of it. */
 
 import { readFileSync } from "node:fs";
-import type { Session } from "../../src/model/session.ts";
-import { emptySession } from "../../src/model/session.ts";
+import { emptySession, type Session } from "../../src/model/session.ts";
 import { initSync } from "../../src/wasm/neuralmls_wasm.js";
 import { rules } from "../../src/worker/sessions.ts";
 
