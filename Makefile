@@ -46,7 +46,7 @@ rust-simd: tools
 
 # The browser editor's crates: they must compile without threads for WebAssembly.
 wasm: wasm-target
-	cargo clippy --locked -p neuralmls-core -p neuralmls-shapes -p neuralmls-wasm --no-default-features --target wasm32-unknown-unknown -- -D warnings
+	cargo clippy --locked -p neuralmls-core -p neuralmls-session -p neuralmls-shapes -p neuralmls-wasm --no-default-features --target wasm32-unknown-unknown -- -D warnings
 
 wasm-target: tools
 	@rustup target list --installed 2>/dev/null | grep -q wasm32-unknown-unknown || rustup target add wasm32-unknown-unknown

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from safetensors import safe_open
+from safetensors.numpy import load_file, save_file
 
 import neuralmls as nm
 from neuralmls import samples
@@ -99,23 +101,22 @@ def weights(count: int = 10, width: int = 1024) -> nm.NeuralWeights:
 def network(count: int = 10) -> Network:
     """The parameters of `weights(count)`."""
     with tempfile.TemporaryDirectory() as folder:
-        arrays = stored(weights(count), Path(folder) / "network.npz")
+        arrays = stored(weights(count), Path(folder) / "network.weights")
     return Network(
-        arrays["centre"], float(arrays["half"]), [(arrays[f"weight{i}"], arrays[f"bias{i}"]) for i in range(3)]
+        arrays["centre"], arrays["half"].item(), [(arrays[f"weight{i}"], arrays[f"bias{i}"]) for i in range(3)]
     )
 
 
 def stored(what: nm.NeuralWeights, path: Path) -> dict[str, NDArray[np.generic]]:
     """What `save` writes."""
     what.save(path)
-    with np.load(path) as file:
-        return {name: file[name] for name in file.files}
+    return dict(load_file(path))
 
 
 def fresh() -> nm.NeuralWeights:
     """The same network, never evaluated: nothing that an evaluation prepares once is there yet."""
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "network.npz"
+        path = Path(folder) / "network.weights"
         weights().save(path)
         return nm.NeuralWeights.load(path)
 
@@ -123,11 +124,13 @@ def fresh() -> nm.NeuralWeights:
 def dense() -> nm.NeuralWeights:
     """The same function on our own dense path: Fourier features, which are not piecewise linear, with weights of 0."""
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "network.npz"
+        path = Path(folder) / "network.weights"
         arrays = stored(weights(), path)
         arrays["frequencies"] = np.ones((1, 3), np.float32)
         arrays["weight0"] = np.concatenate(
             [arrays["weight0"], np.zeros((len(arrays["weight0"]), 2), np.float32)], axis=1
         )
-        np.savez(path, **arrays)
+        with safe_open(path, "numpy") as file:
+            metadata = file.metadata()
+        save_file(arrays, path, metadata=metadata)
         return nm.NeuralWeights.load(path)
