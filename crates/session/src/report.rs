@@ -120,8 +120,9 @@ impl Map {
             warnings.extend(self.not_arrived(aim, remedy.as_deref()));
         }
         let longest = control_points.iter().map(|point| point.moved).fold(0.0, f64::max);
-        warnings.extend(held.and_then(|held| not_held(held, longest)));
-        let handles = self.in_words(soft.is_some(), self.any_short(aim));
+        let coarse = held.and_then(|held| not_held(held, longest));
+        let handles = self.in_words(soft.is_some(), self.any_short(aim), coarse.is_some());
+        warnings.extend(coarse);
         Ok(Report { control_points, handles, soft, warnings, places: arrived })
     }
 
@@ -130,12 +131,16 @@ impl Map {
         aim.misses.iter().any(|miss| *miss > ARRIVED * self.side())
     }
 
-    fn in_words(&self, soft: bool, short: bool) -> String {
+    fn in_words(&self, soft: bool, short: bool, coarse: bool) -> String {
         match self.session().settings.handles {
             HandlesSetting::Soft => "soft".into(),
             _ if soft => "left soft".into(),
             HandlesSetting::Part(part) => format!("{} of the way", general(part, 6)),
             _ if short => "as far as they go".into(),
+            _ if self.session().points.iter().any(|point| point.weight < 1.0) => {
+                "as closely as their weights say".into()
+            }
+            _ if coarse => "exact, but for the file's steps".into(),
             _ => "exact".into(),
         }
     }

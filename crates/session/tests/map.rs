@@ -108,7 +108,10 @@ fn a_point_of_little_weight_is_met_less_closely() {
         let mut list = session.points.into_list();
         list[2].weight = weight;
         let map = fitted(&Session::new(ControlPoints::new(3, list).unwrap()));
-        map.report(&map.aim().unwrap(), None).unwrap().control_points[2].distance_to_target
+        let report = map.report(&map.aim().unwrap(), None).unwrap();
+        let said = if weight < 1.0 { "as closely as their weights say" } else { "exact" };
+        assert_eq!(report.handles, said);
+        report.control_points[2].distance_to_target
     };
     let (none, half, whole) = (with(0.0), with(0.5), with(1.0));
     assert!(none > half && half > whole && whole < 1e-6, "{none} {half} {whole}");

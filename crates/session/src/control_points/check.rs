@@ -67,9 +67,12 @@ impl ControlPoints {
     fn mirrored(&self) -> Option<String> {
         let Rest { rotated, mirrored } = fit::rest(&self.sources(), &self.targets(), self.dim())?;
         (mirrored < SMALL_REST && rotated > LARGE_REST).then(|| {
-            let off = number((1000.0 * mirrored).round() / 10.0);
+            let off = match (1000.0 * mirrored).round() {
+                0.0 => String::new(),
+                off => format!(", to {} % of their size", number(off / 10.0)),
+            };
             format!(
-                "the targets are the mirror image of the sources, to {off} % of their size: rigid and similarity transforms \
+                "the targets are the mirror image of the sources{off}: rigid and similarity transforms \
                  fold the shape there, affine can mirror it"
             )
         })
