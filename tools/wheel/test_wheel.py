@@ -25,9 +25,6 @@ LARGEST_MB = 130
 OF_THE_CHECKOUT = {"bench", "test"}
 # What each extra is for, and the file that comes of it.
 EXTRAS: dict[str, list[tuple[list[str], str]]] = {
-    "baselines": [
-        (["compare", "chair.obj", "--points", "chair.points.json", "-o", "compared"], "compared"),
-    ],
     "figures": [
         (["demo", "-o", "out"], "out/chair.png"),
         (["render", "chair.obj", "-o", "drawn.png"], "drawn.png"),
