@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -14,12 +16,19 @@ ITERATIONS = 50  # each fits a rotation to every vertex, and then the vertices t
 UNSETTLED = 0.1
 
 
-def arap(shape: Shape, p: ArrayLike, q: ArrayLike) -> NDArray[np.float64]:
+def arap(shape: Shape, p: ArrayLike, q: ArrayLike, *, start: Literal["rest", "fit"] = "rest") -> NDArray[np.float64]:
     """Return the vertices `y` that minimise `sum_i sum_(j ~ i) c_ij |(y_i - y_j) - R_i (x_i - x_j)|^2`.
 
     `R_i` is a rotation, `c_ij` the cotangent weight. The vertex nearest to each control point is a constraint, as in
     the paper: it moves by `q - p`. The shape must be a manifold triangle mesh without degenerate triangles, with a
-    control point on each connected part. Arguments, result and further errors: `neuralmls_research.baselines`.
+    control point on each connected part. Other arguments, result and further errors: `neuralmls_research.baselines`.
+
+    Parameters
+    ----------
+    start : "rest" or "fit"
+        Where the iterations begin, which decides where they end: from the rest positions, moved by the mean of what the
+        control points move by; or from these turned, too, by the rotation that takes the control points nearest to
+        their targets, which is better where the shape turns as a whole.
 
     Raises
     ------
@@ -28,8 +37,7 @@ def arap(shape: Shape, p: ArrayLike, q: ArrayLike) -> NDArray[np.float64]:
 
     Source
     ------
-    Sorkine, Alexa, "As-Rigid-As-Possible Surface Modeling", SGP 2007; Chao et al. 2010 for the energy. 50 iterations
-    from the rest positions, moved by the mean of what the control points move by.
+    Sorkine, Alexa, "As-Rigid-As-Possible Surface Modeling", SGP 2007; Chao et al. 2010 for the energy. 50 iterations.
 
     Examples
     --------
@@ -52,8 +60,9 @@ def arap(shape: Shape, p: ArrayLike, q: ArrayLike) -> NDArray[np.float64]:
         igl.arap_precomputation(rest, faces, 3, held.astype(np.int32), data)
         offsets = (targets - sources) / half
         constraints = rest[held] + offsets
+        first = _fitted(rest, rest[held], constraints) if start == "fit" else rest + offsets.mean(axis=0)
         data.max_iter = ITERATIONS - ITERATIONS // 10
-        before = igl.arap_solve(constraints, data, rest + offsets.mean(axis=0))
+        before = igl.arap_solve(constraints, data, first)
         data.max_iter = ITERATIONS // 10
         after: NDArray[np.float64] = finite("ARAP", igl.arap_solve(constraints, data, before))
     except RuntimeError as error:
@@ -65,3 +74,12 @@ def arap(shape: Shape, p: ArrayLike, q: ArrayLike) -> NDArray[np.float64]:
             f"still move a vertex by {last:.2g} of the shape's longest side"
         )
     return after * half + centre
+
+
+def _fitted(x: NDArray[np.float64], p: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The points moved by the rigid motion that takes `p` nearest to `q` (Kabsch 1976): never a reflection."""
+    middle, goal = p.mean(axis=0), q.mean(axis=0)
+    u, _, vt = np.linalg.svd((p - middle).T @ (q - goal))
+    u[:, 2] *= np.linalg.det(u @ vt)
+    moved: NDArray[np.float64] = (x - middle) @ (u @ vt) + goal
+    return moved
