@@ -17,6 +17,7 @@ from neuralmls_research.experiments.methods import Method
 from neuralmls_research.experiments.naming import OURS, description_of
 from neuralmls_research.experiments.seeds import deviation_of, mean_of, other_orders
 
+ARRIVED = 1e-6  # of half of the longest side: logits in single precision know no less, and a logarithm would show noise
 # By which methods are ranked: smaller is better.
 RANKED = {
     "off targets, at the point": "at_points",
@@ -114,13 +115,14 @@ def draw_scatter(path: Path, results: Mapping[str, list[Result]]) -> None:
 
 
 def _marks(results: Mapping[str, list[Result]], error: str, distortion: str) -> dict[str, list[tuple[float, float]]]:
-    """A mark for each run that has both."""
+    """A mark for each run that has both, the seeds of a method alike."""
     marks: dict[str, list[tuple[float, float]]] = {}
-    for run in (run for runs in results.values() for run in runs):
-        off, change = getattr(run.measures, error, None), getattr(run.measures, distortion, None)
-        marks.setdefault(run.title, [])
-        if off is not None and change is not None:
-            marks[run.title].append((100 * off / 2, change.mean))
+    for runs in results.values():
+        own = marks.setdefault(runs[0].title, [])
+        for run in runs:
+            off, change = getattr(run.measures, error, None), getattr(run.measures, distortion, None)
+            if off is not None and change is not None:
+                own.append((100 * off / 2 if off > ARRIVED else 0.0, change.mean))
     return marks
 
 
@@ -134,7 +136,7 @@ def show(told: dict[str, Any], file: TextIO) -> None:
             method["title"],
             _figure(method, "at_points", "{:.2f}", 50, " %"),
             _figure(method, "at_vertices", "{:.2f}", 50, " %"),
-            _figure(method, "folded", "{:,.6g}"),
+            _figure(method, "folded", "{:,}"),
             f"{method['seconds']:.2f}",
         )
         for method in done
@@ -161,7 +163,14 @@ def show(told: dict[str, Any], file: TextIO) -> None:
 
 
 def _show_settings(done: list[dict[str, Any]], file: TextIO) -> None:
-    pairs = [(method["name"], description_of(method["settings"])) for method in done if method["settings"]]
+    pairs = []
+    for method in done:
+        if method["settings"]:
+            settings = method["settings"]
+            if "seeds" in method:  # which are said below
+                weights = {name: value for name, value in settings["weights"].items() if name != "seed"}
+                settings = settings | {"weights": weights}
+            pairs.append((method["name"], description_of(settings)))
     if pairs:
         print("\nsettings", file=file)
         console.pairs(pairs, file)
@@ -176,12 +185,16 @@ def _show_seeds(told: dict[str, Any], file: TextIO) -> None:
     print(file=file)
     console.line(f"mean ± deviation over seeds {seeds[0]} to {seeds[-1]}: {names}", file)
     for pair in told["other_orders"]:
-        own = ", ".join(map(str, pair["seeds"]))
-        console.line(
-            f"  {pair['measure']}: {pair['better']} is better than {pair['worse']}, but not with seeds {own}", file
-        )
+        console.line(f"  {pair['measure']}: {order_said(pair)}", file)
     if not told["other_orders"]:
         console.line("  no seed changes an order of methods", file)
+
+
+def order_said(pair: Mapping[str, Any]) -> str:
+    """In words, that the order of two methods hangs on the seed."""
+    seeds = pair["seeds"]
+    own = f"seed{'s' if len(seeds) > 1 else ''} {', '.join(map(str, seeds))}"
+    return f"{pair['better']} is better than {pair['worse']} on the mean, but not with {own}"
 
 
 def _distortion(method: dict[str, Any]) -> tuple[str, ...]:
@@ -195,7 +208,7 @@ def _distortion(method: dict[str, Any]) -> tuple[str, ...]:
         _figure(method, "strain.area_mean", "{:.2f}", 100, " %"),
         _figure(method, "strain.edge_mean", "{:.2f}", 100, " %"),
         _figure(method, "volume", "{:+.2f}", 100, " %"),
-        _figure(method, "flips.count", "{:,.6g}"),
+        _figure(method, "flips.count", "{:,}"),
     )
 
 
@@ -204,6 +217,8 @@ def _figure(method: dict[str, Any], path: str, form: str, factor: float = 1, uni
     value = _at(method["measures"], path)
     if value is None:
         return "-"
+    if "deviation" in method and form == "{:,}":
+        form = "{:,.1f}"  # a mean of counts
     text = form.format(factor * value)
     if "deviation" in method:
         text += f" ± {form.replace('+', '').format(factor * _at(method['deviation'], path))}"

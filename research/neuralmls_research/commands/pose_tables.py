@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from neuralmls.cli.plugin import console
+from neuralmls_research.commands.comparison import order_said
 
 if TYPE_CHECKING:
     from neuralmls_research.experiments.against_rivals import Measured
@@ -98,9 +99,7 @@ def _show_verdicts(verdicts: list[dict[str, Any]], seeds: list[int], file: TextI
         for where, names in verdict["without"].items():
             console.line(f"  {Path(where).stem}, {count} control points: without {', '.join(names)}", file)
         for pair in verdict["other_orders"]:
-            own = ", ".join(map(str, pair["seeds"]))
-            better = f"{pair['better']} is better than {pair['worse']}"
-            console.line(f"  {count} control points: {better}, but not with seeds {own}", file)
+            console.line(f"  {count} control points: {order_said(pair)}", file)
     if len(seeds) > 1:
         console.line(f"  means over seeds {seeds[0]} to {seeds[-1]}", file)
         if not any(verdict["other_orders"] for verdict in verdicts):

@@ -51,10 +51,12 @@ def other_orders(values: Mapping[str, Sequence[float]], seeds: Sequence[int]) ->
 def mean_of(documents: Sequence[Any]) -> Any:
     """Return the mean of nested documents of numbers, field by field; None where one of them has no number.
 
-    >>> mean_of([{"a": 1, "b": {"c": 2}}, {"a": 2, "b": None}])
-    {'a': 1.5, 'b': None}
+    What is the same in all, as a count of what was left out, is kept as it is.
+
+    >>> mean_of([{"a": 1, "b": {"c": 2}, "d": 7}, {"a": 2, "b": None, "d": 7}])
+    {'a': 1.5, 'b': None, 'd': 7}
     """
-    return _by_field(documents, fmean)
+    return _by_field(documents, lambda values: values[0] if len(set(values)) == 1 else fmean(values))
 
 
 def deviation_of(documents: Sequence[Any]) -> Any:

@@ -128,6 +128,17 @@ class KeypointDeformer:
         except NeuralMLSError as error:
             raise FileError(f"{source}: {error}") from error
 
+    def keypoints(self, shape: Shape) -> Array:
+        """Return a shape's keypoints alone, (K, 3), in the coordinates of the file.
+
+        Raises
+        ------
+        NotApplicable
+            The shape is not in space, or has no size.
+        """
+        x, centre, scale = normalise(shape.positions)
+        return network.keypoints(self._layers, x) * scale + centre
+
     def bind(self, shape: Shape) -> BoundKeypoints:
         """Find a shape's keypoints, its cage, and its vertices' coordinates in it.
 
