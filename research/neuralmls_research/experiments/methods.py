@@ -17,7 +17,7 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,6 +27,9 @@ from neuralmls.errors import ArgumentError
 from neuralmls.plugin import Transform
 from neuralmls_research import baselines
 from neuralmls_research.experiments.naming import OURS, own, settings_of, title_of
+
+if TYPE_CHECKING:
+    from neuralmls_research.baselines.kpd import KeypointDeformer
 
 Array: TypeAlias = NDArray[np.float64]
 SpaceMap: TypeAlias = Callable[[Array], Array]
@@ -179,8 +182,8 @@ def classic(
     return _of_weights(title, fitted, settings, adherence=0.0)
 
 
-def kpd(path: str | os.PathLike[str], title: str = baselines.TITLES["kpd"]) -> Method:
-    """KeypointDeformer with a network for the shape's category, from a `.safetensors` file.
+def kpd(network: KeypointDeformer | str | os.PathLike[str], title: str = baselines.TITLES["kpd"]) -> Method:
+    """KeypointDeformer with a network for the shape's category, or the `.safetensors` file of one.
 
     Raises
     ------
@@ -191,7 +194,8 @@ def kpd(path: str | os.PathLike[str], title: str = baselines.TITLES["kpd"]) -> M
     """
     from neuralmls_research.baselines.kpd import KeypointDeformer
 
-    return of_shapes(title, partial(baselines.get("kpd"), network=KeypointDeformer.read(path)))
+    known = network if isinstance(network, KeypointDeformer) else KeypointDeformer.read(network)
+    return of_shapes(title, partial(baselines.get("kpd"), network=known))
 
 
 def _box(shape: Geometry) -> Array:

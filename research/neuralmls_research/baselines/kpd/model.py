@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -84,6 +85,14 @@ class BoundKeypoints:
         return self._rest + self.scale * (self.coordinates @ (self.influence.T @ offsets))
 
 
+class HasPositions(Protocol):
+    """What keypoints are found on: a `Shape`, or anything that has its positions."""
+
+    @property
+    def positions(self) -> Array:
+        """(n, 3)."""
+
+
 class KeypointDeformer:
     """The network: finds the keypoints of a shape of its category, and deforms the shape by them.
 
@@ -128,7 +137,7 @@ class KeypointDeformer:
         except NeuralMLSError as error:
             raise FileError(f"{source}: {error}") from error
 
-    def keypoints(self, shape: Shape) -> Array:
+    def keypoints(self, shape: HasPositions) -> Array:
         """Return a shape's keypoints alone, (K, 3), in the coordinates of the file.
 
         Raises
