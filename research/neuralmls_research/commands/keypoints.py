@@ -31,8 +31,14 @@ def keypoints(*, shape: Path, weights: Path, output: Path, quiet: bool, force: b
     from neuralmls import ControlPoints, read
     from neuralmls_research.baselines.kpd import KeypointDeformer
 
-    network = KeypointDeformer.read(weights)
-    found = network.keypoints(read(shape))
+    network, source = KeypointDeformer.read(weights), read(shape)
+    found = network.keypoints(source)
+    sides = source.positions.max(axis=0) - source.positions.min(axis=0)
+    if sides[0] < sides.max():
+        console.warning(
+            f"{shape}: keypoints are found on shapes that face +x with y up, and this one is longer along "
+            f"{'xyz'[int(sides.argmax())]}: look whether they are where they should be"
+        )
     names = [f"keypoint {number}" for number in range(1, len(found) + 1)]
     ControlPoints(found, names=names).write(output)
     if not quiet:

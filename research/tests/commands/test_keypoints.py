@@ -54,6 +54,14 @@ def test_moved_keypoints_are_compared_with_keypoint_deformer_among_the_methods(r
     assert told["methods"][1]["measures"]["laplacian"]["mean"] == pytest.approx(expected.laplacian.mean)
 
 
+def test_a_shape_that_seems_to_face_elsewhere_is_a_warning(run, airplane):
+    shape = nm.read("plane.obj")
+    shape.write("turned.obj", shape.positions[:, [2, 1, 0]])
+    ran = run("keypoints", "turned.obj", *ASKED[2:])
+    assert ran.code == 0
+    assert "turned.obj: keypoints are found on shapes that face +x with y up, and this one is longer along z" in ran.err
+
+
 def test_what_keypoints_cannot_do_is_refused(refused, airplane, here):
     refused(2, *ASKED[:-1], "points.txt", words=("points.txt", ".json"))
     refused(2, *ASKED[:-1], "plane.obj", words=("plane.obj",))
