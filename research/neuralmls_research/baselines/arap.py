@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from neuralmls import Shape
 from neuralmls.errors import NotApplicable
 from neuralmls_research.baselines.checks import arguments, clean_mesh, finite, library, nearest_vertices, unit_of
+from neuralmls_research.baselines.rigid import moved_rigidly
 
 ITERATIONS = 50  # each fits a rotation to every vertex, and then the vertices to the rotations
 # How far a vertex may still go in the last tenth of them, in longest sides of the shape: more is no convergence.
@@ -60,7 +61,7 @@ def arap(shape: Shape, p: ArrayLike, q: ArrayLike, *, start: Literal["rest", "fi
         igl.arap_precomputation(rest, faces, 3, held.astype(np.int32), data)
         offsets = (targets - sources) / half
         constraints = rest[held] + offsets
-        first = _fitted(rest, rest[held], constraints) if start == "fit" else rest + offsets.mean(axis=0)
+        first = moved_rigidly(rest, rest[held], constraints) if start == "fit" else rest + offsets.mean(axis=0)
         data.max_iter = ITERATIONS - ITERATIONS // 10
         before = igl.arap_solve(constraints, data, first)
         data.max_iter = ITERATIONS // 10
@@ -74,12 +75,3 @@ def arap(shape: Shape, p: ArrayLike, q: ArrayLike, *, start: Literal["rest", "fi
             f"still move a vertex by {last:.2g} of the shape's longest side"
         )
     return after * half + centre
-
-
-def _fitted(x: NDArray[np.float64], p: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The points moved by the rigid motion that takes `p` nearest to `q` (Kabsch 1976): never a reflection."""
-    middle, goal = p.mean(axis=0), q.mean(axis=0)
-    u, _, vt = np.linalg.svd((p - middle).T @ (q - goal))
-    u[:, 2] *= np.linalg.det(u @ vt)
-    moved: NDArray[np.float64] = (x - middle) @ (u @ vt) + goal
-    return moved

@@ -18,16 +18,19 @@ from numpy.typing import NDArray
 from neuralmls import farthest_of
 from neuralmls.errors import ArgumentError, FileError
 from neuralmls.plugin import as_points, as_triangles
+from neuralmls_research.experiments.loose_parts import with_loose_parts
 from neuralmls_research.experiments.methods import METHODS, Array, Method, Surface, classic, neural
 
 MOST = 6  # poses of a file, spread evenly over it
 
 ALPHA = 2.0  # of the classic weights: 1/d^4 is their best here, and a rival is to be at its best
+OF_SURFACES = ("arap", "arap-from-fit", "biharmonic", "biharmonic-displacements")
 # The methods as they were first measured: enough steps for 40 control points to arrive.
 POSE_METHODS: dict[str, Method] = METHODS | {
     "classic": classic(alpha=ALPHA),
     "neural": neural(steps=200),
     "neural-exact": neural(steps=200, adherence=1.0),
+    **{name: with_loose_parts(METHODS[name]) for name in OF_SURFACES},
 }
 
 QUICK = tuple(name for name in POSE_METHODS if name != "biharmonic")  # its weights take ten times as long

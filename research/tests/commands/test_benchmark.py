@@ -22,7 +22,7 @@ def folder(here):
     rest = np.random.default_rng(0).uniform(size=(40, 3))
     turned = rest @ np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
     (here / "poses").mkdir()
-    faces = np.arange(39).reshape(-1, 3)
+    faces = np.concatenate([np.arange(39).reshape(-1, 3), [[0, 1, 3], [0, 1, 4]]])  # an edge on three faces
     np.savez(here / "poses" / "block.npz", rest=rest, poses=np.stack([rest + 2, turned]), faces=faces)
     return here / "poses"
 
