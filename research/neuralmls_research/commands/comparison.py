@@ -101,7 +101,7 @@ def draw_scatter(path: Path, results: Mapping[str, list[Result]]) -> None:
 
     x_labels = {
         "at_vertices": "vertices nearest to the control points\noff the targets, mean, % of the longest side",
-        "at_points": "control points themselves\noff the targets, mean, % of the longest side",
+        "at_points": "control points themselves, of maps of space\noff the targets, mean, % of the longest side",
     }
     y_labels = {
         "laplacian": "change of the Laplacian, mean, the shape in [-1, 1]",

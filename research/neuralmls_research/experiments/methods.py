@@ -282,7 +282,9 @@ def with_settings(methods: Mapping[str, Method], said: Mapping[str, Any]) -> dic
     """
     for setting in said:
         if not any(setting in own(method.settings) for method in methods.values()):
-            raise ArgumentError(f"{setting}: none of the methods {', '.join(methods) or 'asked for'} has such a setting")
+            raise ArgumentError(
+                f"{setting}: none of the methods {', '.join(methods) or 'asked for'} has such a setting"
+            )
     changed = dict(methods)
     for name, method in methods.items():
         before = own(method.settings)
