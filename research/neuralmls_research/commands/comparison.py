@@ -80,13 +80,10 @@ def _at(measures: Any, path: str) -> Any:
 
 def write_csv(path: Path, methods: list[dict[str, Any]]) -> None:
     """Write a row a method and a column a figure, empty where there is none."""
-    flat = [
-        _flat({
-            **{name: value for name, value in method.items() if name not in ("measures", "seeds")},
-            **(method["measures"] or {}),
-        })
-        for method in methods
-    ]  # fmt: skip
+    flat = []
+    for method in methods:
+        figures = {name: value for name, value in method.items() if name not in ("measures", "seeds", "settings")}
+        flat.append(_flat(figures | {"settings": method["settings"] or {}} | (method["measures"] or {})))
     names = dict.fromkeys(name for row in flat for name in row)
     out = io.StringIO()
     writer = csv.DictWriter(out, list(names), lineterminator="\n")

@@ -73,6 +73,9 @@ def test_csv_has_a_row_a_method(run, moved, here):
     assert [row["name"] for row in rows] == list(METHODS)
     assert float(rows[1]["strain_dirichlet_mean"]) >= 4
     assert float(rows[1]["at_vertices"]) > 0
+    alphas = {row["name"]: row["settings_weights_alpha"] for row in rows}
+    assert (alphas["classic"], alphas["neural"], alphas["rbf"]) == ("0.5", "", "")
+    assert not {"settings", "measures", "seeds"} & rows[0].keys()
 
 
 def test_deformed_shapes_are_written_if_asked_for(run, moved, here, refused):
