@@ -201,7 +201,7 @@ def test_other_threads_run_during_a_long_call():
         ({"transform": "bend"}, "transform: expected rigid or similarity or affine, found 'bend'"),
         ({"transform": None}, "transform: expected a setting, found None"),
         ({"seed": -1}, "seed: expected a whole number from 0"),
-        ({"seed": 0.5}, "seed: expected a whole number, found 0.5"),
+        ({"seed": 0.5}, "seed: expected a whole number from 0 to 18446744073709551615, found 0.5"),
     ],
 )
 def test_wrong_arguments_are_refused_in_a_sentence(change, sentence):

@@ -39,16 +39,7 @@ class PointTree:
 
 class Weights:
     @staticmethod
-    def neural(
-        p: _Doubles,
-        bounds: _Doubles | None,
-        width: int,
-        steps: int | None,
-        rate: float,
-        seed: int,
-        fourier_sigma: float | None,
-        progress: _Progress,
-    ) -> Weights: ...
+    def fitted(p: _Doubles, bounds: _Doubles | None, settings: str, progress: _Progress) -> Weights: ...
     @staticmethod
     def shape_aware(
         p: _Doubles,
@@ -63,8 +54,6 @@ class Weights:
         seed: int,
         progress: _Progress,
     ) -> Weights: ...
-    @staticmethod
-    def inverse_distance(p: _Doubles, bounds: _Doubles | None, alpha: float, epsilon: float) -> Weights: ...
     @staticmethod
     def of_layers(
         p: _Doubles,
