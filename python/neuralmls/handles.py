@@ -198,10 +198,7 @@ class ExactHandles:
             As `aim`.
         """
         checked = self._checked(targets, temperature, rotations, scales)
-        found = self._core.remedy(*checked, as_adherence(adherence, len(self._p)))
-        if found is None:
-            return None
-        return "with the affine transform" if found[1] is None else f"at temperature {found[1]:g}"
+        return self._core.remedy(*checked, as_adherence(adherence, len(self._p)))
 
     def _checked(
         self, targets: ArrayLike, temperature: float, rotations: Rotations, scales: Scales

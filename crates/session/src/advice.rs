@@ -7,7 +7,7 @@ use serde_json::{json, Value};
 
 use crate::report::ARRIVED;
 use crate::text::{general, quoted};
-use crate::words::{listed, percent, place};
+use crate::words::{at_temperature, listed, percent, place};
 use crate::{Error, HandlesSetting, Map};
 
 /// A soft handle may stop short by this part of the longest move (study: up to 0.075) ...
@@ -207,7 +207,7 @@ impl Map {
 /// What the core has found to at least halve it.
 fn better_in_words((better, part): (Better, f64)) -> String {
     let how = match better {
-        Better::Temperature(other) => format!("at temperature {}", general(other, 6)),
+        Better::Temperature(other) => at_temperature(other),
         Better::Soft => "without exact handles".into(),
     };
     format!("{how} it is {}", percent(part))

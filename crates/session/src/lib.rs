@@ -38,3 +38,4 @@ pub use orientation::Orientation;
 pub use report::{Arrival, Held, OrientationArrival, Report};
 pub use session::{Bounds, Read, Session};
 pub use settings::{transform, HandlesSetting, Settings, WeightsSettings};
+pub use words::remedy_in_words;

@@ -1,11 +1,11 @@
 //! What happened to the control points, and what a person should know of it, in words.
 
-use neuralmls_core::{softmax, Aim, Pose, Remedy, Soft, Weights};
+use neuralmls_core::{softmax, Aim, Pose, Soft, Weights};
 
 use serde_json::json;
 
 use crate::text::{general, quoted};
-use crate::words::listed;
+use crate::words::{listed, remedy_in_words};
 use crate::{Error, HandlesSetting, Map, WeightsSettings};
 
 /// A control point with less of the weight at its own place shares it; the training aims at 0.9.
@@ -154,10 +154,7 @@ impl Map {
             _ => self.session().adherence(),
         };
         let found = self.handles().remedy(pose, self.session().settings.temperature, &adherence)?;
-        Ok(found.map(|remedy| match remedy {
-            Remedy::Temperature(other) => format!("at temperature {}", general(other, 6)),
-            Remedy::Affine => "with the affine transform".into(),
-        }))
+        Ok(found.map(remedy_in_words))
     }
 
     /// Why all control points were left soft, and what would take them to their targets.

@@ -1,4 +1,6 @@
-//! Parts, places and lists as reports and advice have them.
+//! Parts, places, lists and remedies as reports and advice have them.
+
+use neuralmls_core::Remedy;
 
 use crate::text::general;
 
@@ -13,6 +15,19 @@ pub(crate) fn percent(part: f64) -> String {
 /// A place.
 pub(crate) fn place(at: &[f64]) -> String {
     format!("({})", at.iter().map(|c| general(*c, 4)).collect::<Vec<_>>().join(", "))
+}
+
+/// With what control points would arrive.
+pub fn remedy_in_words(remedy: Remedy) -> String {
+    match remedy {
+        Remedy::Temperature(other) => at_temperature(other),
+        Remedy::Affine => "with the affine transform".into(),
+    }
+}
+
+/// Another temperature.
+pub(crate) fn at_temperature(other: f64) -> String {
+    format!("at temperature {}", general(other, 6))
 }
 
 /// Things of a list, the first few of them, and how many more there are.
