@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from neuralmls.advice import fitted
+from neuralmls.advice import fitted, orientations
 from neuralmls.arrays import as_points, box_around
+from neuralmls.control_points import ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ArgumentError
 from neuralmls.handles import ExactHandles, Transform
 from neuralmls.orientations import Rotations, Scales
+from neuralmls.session import Session
 from neuralmls.settings import Handles, WeightsName
 from neuralmls.weights import HasLogits, InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
 
@@ -104,9 +106,7 @@ def deform(
         )
         return map.at(x)
     # Logits of someone's own: the same steps, of which a map would keep the weights.
-    solver = ExactHandles(function, transform=transform)
-    share = {"auto": 1.0, "exact": 1.0, "soft": 0.0}.get(handles, handles) if isinstance(handles, str) else handles
-    solve = solver.aim if handles == "exact" else solver.aim_carefully
-    aim = solve(targets, temperature, share, rotations=rotations, scales=scales)
-    deformer = Deformer(x, function, transform=transform)
-    return deformer.deform(aim.targets, temperature, rotations=rotations, scales=scales)
+    points = ControlPoints(sources, targets, orientations=orientations(rotations, scales, *sources.shape))
+    session = Session(points, transform=transform, temperature=temperature, handles=handles)
+    aimed = session._core.aim(ExactHandles(function, transform=transform)._core)
+    return Deformer(x, function, transform=transform).deform(aimed, temperature, rotations=rotations, scales=scales)

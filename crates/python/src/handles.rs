@@ -10,7 +10,7 @@ use crate::errors::from_core;
 
 /// Solves for effective targets.
 #[pyclass(frozen)]
-pub(crate) struct Handles(neuralmls_core::Handles);
+pub(crate) struct Handles(pub neuralmls_core::Handles);
 
 /// Effective targets m x d, how far each control point stays from where it was to go, and why they do not arrive: a reason, which
 /// control point, how much.

@@ -9,6 +9,7 @@ use pyo3::types::PyBytes;
 use crate::arrays::table;
 use crate::control_points::{raised, ControlPoints};
 use crate::deformer::Deformer;
+use crate::handles::Handles;
 use crate::progress::run_session;
 use crate::report::Report;
 use crate::shape_file::ShapeFile;
@@ -99,6 +100,14 @@ impl Session {
     fn with_frame(&self, frame: Option<PyReadonlyArray2<'_, f64>>) -> PyResult<Session> {
         let frame = bounds(frame, self.0.points.dim())?;
         Ok(Session(neuralmls_session::Session { frame, ..self.0.clone() }))
+    }
+
+    /// Where to aim so that the control points arrive as closely as the settings say, m x d; `handles` are those of its control points.
+    fn aim<'py>(&self, py: Python<'py>, handles: &Handles) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (q, orientations) = (self.0.points.targets(), self.0.points.orientations());
+        let pose = Pose { q: &q, orientations: orientations.as_deref() };
+        let aim = py.detach(|| self.0.aim(&handles.0, pose)).map_err(raised)?;
+        table(py, aim.targets, self.0.points.dim())
     }
 
     /// Fits the weights: in the session's frame, else in the box `bounds`, else in that of the control points.
