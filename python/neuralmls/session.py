@@ -388,6 +388,7 @@ class Map:
             tuple(core.orientations),
             core.handles,
             core.soft,
+            core.not_arrived,
             tuple(core.warnings),
         )
 

@@ -48,6 +48,8 @@ pub struct Report {
     pub handles: String,
     /// Why all of them were left soft although more was asked for, and what would help; none where they were not.
     pub soft: Option<String>,
+    /// That control points do not arrive, one of the warnings; [`Map::advise`] says it too, by other means.
+    pub not_arrived: Option<String>,
     /// What a person should know, a sentence each.
     pub warnings: Vec<String>,
     /// Where the control points land, m x d.
@@ -115,15 +117,16 @@ impl Map {
             false => None,
         };
         let soft = self.why_soft(aim, remedy.as_deref());
-        let mut warnings: Vec<String> = self.not_parted()?.into_iter().collect();
-        if soft.is_none() {
-            warnings.extend(self.not_arrived(aim, remedy.as_deref()));
-        }
+        let not_arrived = match soft {
+            None => self.not_arrived(aim, remedy.as_deref()),
+            Some(_) => None,
+        };
+        let mut warnings: Vec<String> = self.not_parted()?.into_iter().chain(not_arrived.clone()).collect();
         let longest = control_points.iter().map(|point| point.moved).fold(0.0, f64::max);
         let coarse = held.and_then(|held| not_held(held, longest));
         let handles = self.in_words(soft.is_some(), self.any_short(aim), coarse.is_some());
         warnings.extend(coarse);
-        Ok(Report { control_points, handles, soft, warnings, places: arrived })
+        Ok(Report { control_points, handles, soft, not_arrived, warnings, places: arrived })
     }
 
     /// Whether one stays short of where it was to go.

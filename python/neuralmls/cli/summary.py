@@ -61,7 +61,7 @@ def summary(
     if advice is not None:
         # Of handles that do not arrive it is told once.
         short = any(one.kind == "misses" for one in advice)
-        arrival = [w for w in report.warnings if not (short and w.startswith("control points do not arrive"))]
+        arrival = [sentence for sentence in report.warnings if not (short and sentence == report.not_arrived)]
         document["advice"] = [asdict(one) for one in advice]
         document["warnings"] = [*arrival, *(one.sentence for one in advice), *kept]
     return document
