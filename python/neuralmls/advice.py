@@ -103,7 +103,7 @@ def fitted(
 
 def orientations(rotations: Rotations, scales: Scales, count: int, dimension: int) -> list[Orientation | None] | None:
     """Return scaled rotation matrices, as `Deformer.deform` has them, as what control points carry."""
-    scaled = asorientations(rotations, scales, count, dimension)
+    scaled = as_orientations(rotations, scales, count, dimension)
     if scaled is None:
         return None
     oriented: list[Orientation | None] = [None] * count

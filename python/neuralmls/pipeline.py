@@ -109,4 +109,5 @@ def deform(
     points = ControlPoints(sources, targets, orientations=orientations(rotations, scales, *sources.shape))
     session = Session(points, transform=transform, temperature=temperature, handles=handles)
     aimed = session._core.aim(ExactHandles(function, transform=transform)._core)
-    return Deformer(x, function, transform=transform).deform(aimed, temperature, rotations=rotations, scales=scales)
+    deformer = Deformer(x, function, transform=transform)
+    return deformer.deform(aimed, temperature, rotations=points.rotations, scales=points.scales)
