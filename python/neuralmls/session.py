@@ -215,17 +215,17 @@ class Session:
             Shape-aware weights need SciPy, and it is not installed.
         """
         dimension = self.points.dimension
-        boxes = [box_of(shape, dimension) for shape in shapes]
-        bounds = as_box(box_around(np.concatenate(boxes)), dimension) if boxes else None
+        boxes, bounds = [box_of(shape, dimension) for shape in shapes], self.frame
+        if boxes and bounds is None:
+            bounds = as_box(box_around(np.concatenate(boxes)), dimension)
         if self.weights != "shape-aware":
             return Map._of(self._core.fit(bounds, progress))
-        if bounds is None:
+        if not shapes or bounds is None:
             raise ArgumentError("shapes: shape-aware weights need at least one shape to learn from")
-        frame = self.frame if self.frame is not None else bounds
         x, faces = together(shapes, dimension)
         seed = self.settings["weights"]["seed"]
-        weights = ShapeAwareWeights.fit(self.points.sources, x, faces, bounds=frame, seed=seed, progress=progress)
-        return Map._of(_core.Map.of(self._core.with_frame(np.ascontiguousarray(frame)), weights._core))
+        weights = ShapeAwareWeights.fit(self.points.sources, x, faces, bounds=bounds, seed=seed, progress=progress)
+        return Map._of(_core.Map.of(self._core.with_frame(np.ascontiguousarray(bounds)), weights._core))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored_session, (self._core.to_json(), self._notes)
@@ -274,6 +274,11 @@ class Map:
         """The weights."""
         core = self._core.weights
         return KINDS[core.kind]._of(core)
+
+    @property
+    def side(self) -> float:
+        """What lengths are measured by: the longest side of the box in which the weights were trained."""
+        return self._core.side
 
     def with_session(self, session: Session) -> Map:
         """Return the map of another session with the same weights: other targets, transform, temperature, handles.

@@ -28,7 +28,7 @@ def summary(
     files: list[str],
     kept: list[str],
 ) -> dict[str, Any]:
-    """What was done, lengths in file units. The caller adds the seconds."""
+    """What was done, lengths in file units, `side` what they are measured by. The caller adds the seconds."""
     session = map.session
     weights: dict[str, Any] = dict(session.settings["weights"])
     if isinstance(map.weights, NetworkWeights):
@@ -49,6 +49,7 @@ def summary(
         "vertices": len(shape.positions),
         "triangles": 0 if shape.faces is None else len(shape.faces),
         "longest_side": longest_side(shape),
+        "side": map.side,
         "weights": weights,
         "transform": session.settings["transform"],
         "temperature": session.settings["temperature"],
@@ -69,7 +70,7 @@ def summary(
 
 def show(told: dict[str, Any], *, everything: bool, file: TextIO) -> None:
     """Print a summary for a person."""
-    points, weights, side = told["control_points"], told["weights"], told["longest_side"]
+    points, weights, side = told["control_points"], told["weights"], told["side"]
     vertices = f"{told['vertices']:,}"
     if told["triangles"]:
         vertices += f", in {told['triangles']:,} triangles"
