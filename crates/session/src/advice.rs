@@ -5,9 +5,9 @@ use neuralmls_core::{Better, Kind, Look, Pose, Probe};
 
 use serde_json::{json, Value};
 
-use crate::report::ARRIVED;
+use crate::report::{short_of, ARRIVED};
 use crate::text::{general, quoted};
-use crate::words::{at_temperature, listed, percent, place};
+use crate::words::{at_temperature, distance, percent, place};
 use crate::{Error, HandlesSetting, Map};
 
 /// A soft handle may stop short by this part of the longest move (study: up to 0.075) ...
@@ -146,21 +146,16 @@ impl Map {
         if self.session().settings.handles == HandlesSetting::Soft {
             allowed = allowed.max((SHORT * longest).min(WIDE * self.side()));
         }
-        let mut short: Vec<usize> = (0..points.len()).filter(|&i| away[i] > allowed).collect();
-        short.sort_by(|&a, &b| away[b].total_cmp(&away[a]));
-        let Some(&worst) = short.first() else {
+        let Some((short, named)) = short_of(points, &away, allowed) else {
             return Ok(None);
         };
-        let named: Vec<String> = short
-            .iter()
-            .map(|&i| format!("{} by {}", quoted(&points[i].name), general(away[i], 3)))
-            .collect();
+        let worst = short[0];
         Ok(Some(Advice {
             kind: "misses",
             sentence: format!(
                 "control points stop short of their targets, with {} handles: {}; {}",
                 self.session().settings.handles.name(),
-                listed(&named),
+                named,
                 self.what_arrives()?
             ),
             place: points[worst].position.clone(),
@@ -211,10 +206,6 @@ fn better_in_words((better, part): (Better, f64)) -> String {
         Better::Soft => "without exact handles".into(),
     };
     format!("{how} it is {}", percent(part))
-}
-
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
 /// Advice for a face that takes JSON: a list of kind, sentence, the control points' numbers, and how bad.

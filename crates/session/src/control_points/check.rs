@@ -4,7 +4,7 @@ use super::fit::{self, Rest};
 use super::{axes, ControlPoints};
 use crate::error::Error;
 use crate::session::{longest, LARGEST};
-use crate::text::{general, listed, number};
+use crate::text::{general, names, number};
 
 /// How far outside of the shape's box (in longest sides of it) a control point is no longer taken for intended.
 const FAR_SOURCE: f64 = 1.0;
@@ -37,7 +37,7 @@ impl ControlPoints {
         {
             let each = || self.iter().zip(points.chunks_exact(self.dim()));
             let huge = each().filter(|(_, place)| place.iter().any(|c| c.abs() > LARGEST));
-            let huge = listed(huge.map(|(point, _)| &*point.name));
+            let huge = names(huge.map(|(point, _)| &*point.name));
             if !huge.is_empty() {
                 let largest = general(LARGEST, 6);
                 let message = format!(
@@ -51,9 +51,9 @@ impl ControlPoints {
                 .collect();
             if !far.is_empty() {
                 let most = general(far.iter().map(|(_, distance)| *distance).fold(0.0, f64::max), 6);
-                let (names, side) = (listed(far.iter().map(|(name, _)| *name)), general(side, 6));
+                let (far, side) = (names(far.iter().map(|(name, _)| *name)), general(side, 6));
                 warnings.push(format!(
-                    "the {what} of {names} lies up to {most} units outside of the shape, whose longest side is {side}: \
+                    "the {what} of {far} lies up to {most} units outside of the shape, whose longest side is {side}: \
                      wrong coordinates are the usual mistake"
                 ));
             }
