@@ -162,15 +162,7 @@ impl Map {
     /// Where the orientations do not fit.
     pub fn aim(&self) -> Result<Aim, Error> {
         let (q, orientations) = (self.session.points.targets(), self.session.points.orientations());
-        self.aim_at(Pose { q: &q, orientations: orientations.as_deref() })
-    }
-
-    /// [`Map::aim`] for other targets than the session's: what a drag asks for, frame by frame.
-    ///
-    /// # Errors
-    /// Where the targets do not fit.
-    pub fn aim_at(&self, pose: Pose<'_>) -> Result<Aim, Error> {
-        self.session.aim(&self.handles, pose)
+        self.session.aim(&self.handles, Pose { q: &q, orientations: orientations.as_deref() })
     }
 
     /// Binds the points `x` (n x dim); `tree`, where there is one, holds the same points.
