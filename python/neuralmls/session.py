@@ -16,7 +16,7 @@ from neuralmls.arrays import Progress, as_box, as_points, box_around
 from neuralmls.control_points import ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
-from neuralmls.files import as_path, read_bytes, write_atomically
+from neuralmls.files import read_file, write_atomically
 from neuralmls.handles import Transform
 from neuralmls.placement import as_indices
 from neuralmls.report import Advice, Look, Report
@@ -419,8 +419,7 @@ class Map:
         ArgumentError
             There are no points, or a face names none.
         """
-        x = shape.positions if isinstance(shape, Shape) else as_points("x", shape, self.session.points.dimension)
-        triangles = shape.faces if isinstance(shape, Shape) else faces
+        x, triangles = self._surface(shape, faces)
         other = None if isinstance(self.weights, ShapeAwareWeights) else lambda: self._shape_aware(x, triangles)
         names = self._core.session.points.names
         return [
@@ -436,9 +435,16 @@ class Map:
         ArgumentError
             There are no points, or a face names none.
         """
-        x = shape.positions if isinstance(shape, Shape) else as_points("x", shape, self.session.points.dimension)
-        triangles = shape.faces if isinstance(shape, Shape) else faces
+        x, triangles = self._surface(shape, faces)
         return Look(*self._core.look(x, as_indices(triangles, len(x))))
+
+    def _surface(
+        self, shape: Shape | ArrayLike, faces: ArrayLike | None
+    ) -> tuple[NDArray[np.float64], ArrayLike | None]:
+        """The points and triangles that are looked at."""
+        if isinstance(shape, Shape):
+            return shape.positions, shape.faces
+        return as_points("x", shape, self.session.points.dimension), faces
 
     def _shape_aware(self, x: NDArray[np.float64], faces: ArrayLike | None) -> core.Map | None:
         """The same with weights that know the shape; None where they cannot be fitted."""
@@ -470,10 +476,9 @@ class Map:
         FileError
             The file is missing, or is no map.
         """
+        data = read_file(path)
         try:
-            return cls._of(_core.Map.from_bytes(read_bytes(as_path("path", path))))
-        except OSError as error:
-            raise FileError(f"{path}: cannot read: {error.strerror or error}") from error
+            return cls._of(_core.Map.from_bytes(data))
         except FileError as error:
             raise FileError(f"{path}: {error}") from None
 

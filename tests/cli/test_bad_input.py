@@ -46,8 +46,10 @@ def test_bad_shapes(refused, here, name, text, words):
 
 
 def test_missing_shape(refused):
-    refused(1, "deform", "none.obj", "--points", "points.csv", "-o", "out.obj", words=("none.obj", "No such file"))
-    refused(1, "inspect", "none.obj", words=("none.obj", "No such file"))
+    refused(
+        1, "deform", "none.obj", "--points", "points.csv", "-o", "out.obj", words=("none.obj", "there is no such file")
+    )
+    refused(1, "inspect", "none.obj", words=("none.obj", "there is no such file"))
 
 
 def test_folder_as_shape(refused, here):
