@@ -358,8 +358,7 @@ class Map:
             They are no finite points of the map's dimension.
         """
         x = shape.positions if isinstance(shape, Shape) else shape
-        transform = json.loads(self._core.session.settings)["transform"]
-        return Deformer(x, self.weights, transform=transform, progress=progress)
+        return Deformer(x, self.weights, transform=self.session.settings["transform"], progress=progress)
 
     def frame(
         self,
