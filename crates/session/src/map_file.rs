@@ -44,6 +44,12 @@ impl Map {
     }
 }
 
+/// Whether bytes begin as those of a map do, or of weights: a length, and a header with our metadata first.
+pub(crate) fn is(bytes: &[u8]) -> bool {
+    let start = format!("{{\"__metadata__\":{{\"{METADATA}\":");
+    bytes.get(size_of::<u64>()..).is_some_and(|header| header.starts_with(start.as_bytes()))
+}
+
 /// Weights alone as a file.
 pub fn weights_to_bytes(weights: &Weights) -> Vec<u8> {
     write(weights, None)

@@ -10,6 +10,7 @@
 //! | `landmarks` | what they share: landmarks, some of them missing, become control points |
 
 use crate::error::Error;
+use crate::map_file;
 use crate::session::{Read, Session};
 
 mod csv_text;
@@ -36,6 +37,11 @@ pub(crate) use json::json_text;
 /// # Errors
 /// A file, where it cannot be read; control points, where they cannot be used.
 pub fn read(bytes: &[u8], name: &str) -> Result<Read, Error> {
+    if map_file::is(bytes) {
+        return Err(Error::file(
+            "this is a saved map, not control points: `neuralmls deform --map` takes it",
+        ));
+    }
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let at = error.valid_up_to();
         Error::file(format!("byte {at}: expected UTF-8 text, found 0x{:02x}", bytes[at]))
