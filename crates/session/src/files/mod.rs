@@ -10,7 +10,6 @@
 //! | `landmarks` | what they share: landmarks, some of them missing, become control points |
 
 use crate::error::Error;
-use crate::map_file;
 use crate::session::{Read, Session};
 
 mod csv_text;
@@ -31,13 +30,22 @@ pub(crate) use csv_text::csv_text;
 pub use join::join;
 pub(crate) use json::json_text;
 
+/// The one entry of metadata in a saved map.
+pub(crate) const MAP_METADATA: &str = "neuralmls-map";
+
+/// Whether bytes begin as those of a saved map do: a length, and a header with its metadata first.
+fn is_map(bytes: &[u8]) -> bool {
+    let start = format!("{{\"__metadata__\":{{\"{MAP_METADATA}\":");
+    bytes.get(size_of::<u64>()..).is_some_and(|header| header.starts_with(start.as_bytes()))
+}
+
 /// Reads a control-point file or a landmark file of another tool: by its content, and by the ending of its name where the
 /// content leaves it open.
 ///
 /// # Errors
 /// A file, where it cannot be read; control points, where they cannot be used.
 pub fn read(bytes: &[u8], name: &str) -> Result<Read, Error> {
-    if map_file::is(bytes) {
+    if is_map(bytes) {
         return Err(Error::file(
             "this is a saved map, not control points: `neuralmls deform --map` takes it",
         ));
