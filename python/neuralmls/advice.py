@@ -10,11 +10,10 @@ from numpy.typing import ArrayLike
 from neuralmls.arrays import as_points
 from neuralmls.control_points import ControlPoints
 from neuralmls.errors import ArgumentError
-from neuralmls.handles import Transform
 from neuralmls.orientations import Orientation, Rotations, Scales, as_orientations
 from neuralmls.report import Advice
 from neuralmls.session import Map, Session
-from neuralmls.settings import Handles
+from neuralmls.settings import Handles, Transform
 from neuralmls.weights import Weights
 
 

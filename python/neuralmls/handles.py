@@ -12,11 +12,10 @@ from neuralmls import _core
 from neuralmls.arrays import as_number, as_points
 from neuralmls.errors import ArgumentError
 from neuralmls.orientations import Rotations, Scales, as_orientations
+from neuralmls.settings import Transform
 from neuralmls.weights import HasLogits, Weights
 
 Array: TypeAlias = NDArray[np.float64]
-# What may happen to a shape locally.
-Transform: TypeAlias = Literal["rigid", "similarity", "affine"]
 
 
 @dataclass(frozen=True)

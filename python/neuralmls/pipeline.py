@@ -10,10 +10,10 @@ from neuralmls.arrays import as_points, box_around
 from neuralmls.control_points import ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ArgumentError
-from neuralmls.handles import ExactHandles, Transform
+from neuralmls.handles import ExactHandles
 from neuralmls.orientations import Rotations, Scales
 from neuralmls.session import Session
-from neuralmls.settings import Handles, WeightsName
+from neuralmls.settings import Handles, Transform, WeightsName
 from neuralmls.weights import HasLogits, InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
 
 
@@ -106,8 +106,8 @@ def deform(
         )
         return map.at(x)
     # Logits of someone's own: the same steps, of which a map would keep the weights.
-    points = ControlPoints(sources, targets, orientations=orientations(rotations, scales, *sources.shape))
-    session = Session(points, transform=transform, temperature=temperature, handles=handles)
+    posed = ControlPoints(sources, targets, orientations=orientations(rotations, scales, *sources.shape))
+    session = Session(posed, transform=transform, temperature=temperature, handles=handles)
     aimed = session._core.aim(ExactHandles(function, transform=transform)._core)
     deformer = Deformer(x, function, transform=transform)
-    return deformer.deform(aimed, temperature, rotations=points.rotations, scales=points.scales)
+    return deformer.deform(aimed, temperature, rotations=posed.rotations, scales=posed.scales)

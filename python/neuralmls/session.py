@@ -17,10 +17,9 @@ from neuralmls.control_points import ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
 from neuralmls.files import read_file, write_atomically
-from neuralmls.handles import Transform
 from neuralmls.placement import as_indices
 from neuralmls.report import Advice, Look, Report
-from neuralmls.settings import Handles, WeightsName, changes_of
+from neuralmls.settings import Handles, Transform, WeightsName, changes_of
 from neuralmls.shape import Shape
 from neuralmls.shapes_together import box_of, together
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights

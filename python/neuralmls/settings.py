@@ -1,4 +1,7 @@
-"""Settings of a session as keywords: handed on as a session file has them, since the core checks those."""
+"""Settings of a session as keywords: handed on as a session file has them, since the core checks those.
+
+The command line takes the names from here before anything else is imported: numpy is not.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,10 @@ from numbers import Integral, Real
 from typing import Any, Literal, TypeAlias
 
 WeightsName: TypeAlias = Literal["neural", "shape-aware", "inverse-distance"]
-Handles: TypeAlias = Literal["auto", "exact", "soft"] | float
+# What may happen to a shape locally.
+Transform: TypeAlias = Literal["rigid", "similarity", "affine"]
+HandlesName: TypeAlias = Literal["auto", "exact", "soft"]
+Handles: TypeAlias = HandlesName | float
 
 PARAMETERS = ("width", "steps", "seed", "rate", "fourier_sigma", "alpha", "epsilon")
 
