@@ -16,11 +16,10 @@ from neuralmls.arrays import Progress, as_box, as_points, box_around
 from neuralmls.control_points import ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
-from neuralmls.files import as_path, read_bytes, write_atomically
-from neuralmls.handles import Transform
+from neuralmls.files import read_file, write_atomically
 from neuralmls.placement import as_indices
 from neuralmls.report import Advice, Look, Report
-from neuralmls.settings import Handles, WeightsName, changes_of
+from neuralmls.settings import Handles, Transform, WeightsName, changes_of
 from neuralmls.shape import Shape
 from neuralmls.shapes_together import box_of, together
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
@@ -215,17 +214,17 @@ class Session:
             Shape-aware weights need SciPy, and it is not installed.
         """
         dimension = self.points.dimension
-        boxes = [box_of(shape, dimension) for shape in shapes]
-        bounds = as_box(box_around(np.concatenate(boxes)), dimension) if boxes else None
+        boxes, bounds = [box_of(shape, dimension) for shape in shapes], self.frame
+        if boxes and bounds is None:
+            bounds = as_box(box_around(np.concatenate(boxes)), dimension)
         if self.weights != "shape-aware":
             return Map._of(self._core.fit(bounds, progress))
-        if bounds is None:
+        if not shapes or bounds is None:
             raise ArgumentError("shapes: shape-aware weights need at least one shape to learn from")
-        frame = self.frame if self.frame is not None else bounds
         x, faces = together(shapes, dimension)
         seed = self.settings["weights"]["seed"]
-        weights = ShapeAwareWeights.fit(self.points.sources, x, faces, bounds=frame, seed=seed, progress=progress)
-        return Map._of(_core.Map.of(self._core.with_frame(np.ascontiguousarray(frame)), weights._core))
+        weights = ShapeAwareWeights.fit(self.points.sources, x, faces, bounds=bounds, seed=seed, progress=progress)
+        return Map._of(_core.Map.of(self._core.with_frame(np.ascontiguousarray(bounds)), weights._core))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored_session, (self._core.to_json(), self._notes)
@@ -274,6 +273,11 @@ class Map:
         """The weights."""
         core = self._core.weights
         return KINDS[core.kind]._of(core)
+
+    @property
+    def side(self) -> float:
+        """What lengths are measured by: the longest side of the box in which the weights were trained."""
+        return self._core.side
 
     def with_session(self, session: Session) -> Map:
         """Return the map of another session with the same weights: other targets, transform, temperature, handles.
@@ -353,8 +357,7 @@ class Map:
             They are no finite points of the map's dimension.
         """
         x = shape.positions if isinstance(shape, Shape) else shape
-        transform = json.loads(self._core.session.settings)["transform"]
-        return Deformer(x, self.weights, transform=transform, progress=progress)
+        return Deformer(x, self.weights, transform=self.session.settings["transform"], progress=progress)
 
     def frame(
         self,
@@ -388,6 +391,7 @@ class Map:
             tuple(core.orientations),
             core.handles,
             core.soft,
+            core.not_arrived,
             tuple(core.warnings),
         )
 
@@ -413,8 +417,7 @@ class Map:
         ArgumentError
             There are no points, or a face names none.
         """
-        x = shape.positions if isinstance(shape, Shape) else as_points("x", shape, self.session.points.dimension)
-        triangles = shape.faces if isinstance(shape, Shape) else faces
+        x, triangles = self._surface(shape, faces)
         other = None if isinstance(self.weights, ShapeAwareWeights) else lambda: self._shape_aware(x, triangles)
         names = self._core.session.points.names
         return [
@@ -430,9 +433,16 @@ class Map:
         ArgumentError
             There are no points, or a face names none.
         """
-        x = shape.positions if isinstance(shape, Shape) else as_points("x", shape, self.session.points.dimension)
-        triangles = shape.faces if isinstance(shape, Shape) else faces
+        x, triangles = self._surface(shape, faces)
         return Look(*self._core.look(x, as_indices(triangles, len(x))))
+
+    def _surface(
+        self, shape: Shape | ArrayLike, faces: ArrayLike | None
+    ) -> tuple[NDArray[np.float64], ArrayLike | None]:
+        """The points and triangles that are looked at."""
+        if isinstance(shape, Shape):
+            return shape.positions, shape.faces
+        return as_points("x", shape, self.session.points.dimension), faces
 
     def _shape_aware(self, x: NDArray[np.float64], faces: ArrayLike | None) -> core.Map | None:
         """The same with weights that know the shape; None where they cannot be fitted."""
@@ -464,10 +474,9 @@ class Map:
         FileError
             The file is missing, or is no map.
         """
+        data = read_file(path)
         try:
-            return cls._of(_core.Map.from_bytes(read_bytes(as_path("path", path))))
-        except OSError as error:
-            raise FileError(f"{path}: cannot read: {error.strerror or error}") from error
+            return cls._of(_core.Map.from_bytes(data))
         except FileError as error:
             raise FileError(f"{path}: {error}") from None
 

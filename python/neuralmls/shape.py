@@ -13,7 +13,7 @@ from neuralmls import _core
 from neuralmls.arrays import as_points
 from neuralmls.companions import Companions, find_beside, make_folders, read_beside, to_copy
 from neuralmls.errors import ArgumentError, FileError
-from neuralmls.files import as_path, read_bytes, write_together
+from neuralmls.files import as_path, read_file, write_together
 
 
 class Shape:
@@ -198,12 +198,7 @@ def read(path: str | os.PathLike[str]) -> Shape:
     ArgumentError
         `path` is none.
     """
-    source = as_path("path", path)
-    try:
-        data = read_bytes(source)
-    except OSError as error:
-        raise FileError(f"{source}: cannot read: {error.strerror or error}") from error
-    return decode(data, source)
+    return decode(read_file(path), Path(path))
 
 
 def decode(data: bytes, path: Path) -> Shape:
