@@ -109,7 +109,9 @@ def test_what_is_flat_is_seen_from_the_front_unless_told_otherwise(drawn):
     flat.plot([[0.0, 0], [1, 1]], azimuth=20)
     assert (drawn[0]["azimuth"], drawn[0]["elevation"]) == (0, 0)
     assert (drawn[1]["azimuth"], drawn[1]["elevation"]) == (20, 0)
+    flat.plot([[0.0, 0], [1, 1], [0, 1]], [[0, 1, 2]])
     assert drawn[0]["panels"][0].faces is None
+    assert drawn[2]["panels"][1].faces == [[0, 1, 2]]
 
 
 @pytest.mark.parametrize(

@@ -443,7 +443,14 @@ class Map:
         triangles = shape.faces if isinstance(shape, Shape) else faces
         return Look(*self._core.look(x, as_indices(triangles, len(x))))
 
-    def plot(self, shape: Shape | ArrayLike, *, heat: str | int | None = None, **view: Unpack[View]) -> Picture:
+    def plot(
+        self,
+        shape: Shape | ArrayLike,
+        faces: ArrayLike | None = None,
+        *,
+        heat: str | int | None = None,
+        **view: Unpack[View],
+    ) -> Picture:
         """Return a picture of a shape at rest and deformed, which a notebook shows; `.write("map.png")` keeps it.
 
         The control points are drawn as balls, at rest with arrows to their targets. No display is needed.
@@ -451,6 +458,8 @@ class Map:
         Parameters
         ----------
         shape : Shape, or points (n, d)
+        faces : (f, 3) integers, optional
+            Triangles of the points; without them they are drawn as a cloud.
         heat : str or int, optional
             What the shape is coloured by, from light to dark: a control point's name or number (from 0), for its weight
             `softmax(logits / T)`, 0 to 1; or "displacement", for how far each point moves, `|y - x|`, 0 to the most.
@@ -480,7 +489,7 @@ class Map:
         return of_map(
             x,
             np.asarray(self.at(x), dtype=np.float64),
-            shape.faces if isinstance(shape, Shape) else None,
+            shape.faces if isinstance(shape, Shape) else faces,
             self.session.points,
             heat,
             lambda: softmax(self.weights.logits(x), temperature),

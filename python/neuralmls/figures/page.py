@@ -36,7 +36,7 @@ def png(
 
     panel_width = width // columns
     panel_height = round(panel_width * pictures[0].shape[0] / pictures[0].shape[1])
-    text = max(round(min(width / 64, panel_width / 14)), 9)
+    text = max(round(min(max(width / 64, 13), panel_width / 14)), 9)
     band = round(2.2 * text)
     rows = -(-len(pictures) // columns)
     page = Image.new("RGB", (width, rows * (panel_height + band) + band), "white")
