@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -133,3 +135,16 @@ def test_without_pyvista_the_extra_is_named(shape, map, monkeypatch):
     for plot in (shape.plot, lambda: map.plot(shape)):
         with pytest.raises(nm.NeuralMLSError, match=r"pip install 'neuralmls\[figures\]' \(in a checkout: "):
             plot()
+
+
+def test_only_a_picture_imports_what_draws_it(tmp_path):
+    script = (
+        "import sys, neuralmls as nm\n"
+        "open('cloud.xyz', 'w').write('0 0 0\\n1 2 3\\n')\n"
+        "shape, points = nm.read('cloud.xyz'), nm.ControlPoints([[0.0, 0, 0]])\n"
+        "shape._repr_html_(), nm.Session(points, weights='inverse-distance').fit(shape)._repr_html_()\n"
+        "sys.exit(', '.join({'pyvista', 'PIL', 'matplotlib', 'neuralmls.figures'} & set(sys.modules)))\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    ran = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert ran.stderr.strip() == ""

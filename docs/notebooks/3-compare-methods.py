@@ -41,7 +41,7 @@ shape.plot(points, azimuth=-35, elevation=25, width=560)
 # instead of a wrong answer.
 
 # %%
-NAMES = ("neural", "neural-exact", "classic", "rbf", "arap", "biharmonic")
+NAMES = [name for name in METHODS if "shape-aware" not in name]  # these train for longer
 p, q = points.sources, points.targets
 results = {name: attempt(METHODS[name], shape, p, q) for name in NAMES}
 done = [result for result in results.values() if result.positions is not None]
@@ -72,17 +72,17 @@ draw(panels, control_points=points, width=900, columns=3, azimuth=-35, elevation
 
 
 def figure(value):
-    """A figure for the table; a method that has none, or a cloud without faces, gets a dash."""
-    return f"{'-' if value is None else f'{value:.4g}':>13}"
+    """A figure for the table; where a method or a cloud without faces has none, a dash."""
+    return f"{'-' if value is None else f'{value:.3g}':>12}"
 
 
 columns = ("off targets", "at points", "curvature", "median", "folded", "seconds")
-print(f"{'method':<24}" + "".join(f"{name:>13}" for name in columns))
+print(f"{'method':<32}" + "".join(f"{name:>12}" for name in columns))
 for result in done:
     found, bend = result.measures, result.measures.curvature
     change = (None, None) if bend is None else (bend.mean, bend.median)
-    row = (found.at_vertices, found.at_points, *change, found.folded, round(result.seconds, 2))
-    print(f"{result.title:<24}" + "".join(figure(value) for value in row))
+    row = (found.at_vertices, found.at_points, *change, found.folded, result.seconds)
+    print(f"{result.title:<32}" + "".join(figure(value) for value in row))
 
 # %% [markdown]
 # One picture of it: down and to the left is better. A method that stays at the left arrives;
