@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable
-from typing import Any, Literal, Self, overload
+from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,7 +22,13 @@ from neuralmls.report import Advice, Look, Report
 from neuralmls.settings import Handles, Transform, WeightsName, changes_of
 from neuralmls.shape import Shape
 from neuralmls.shapes_together import box_of, together
+from neuralmls.tables import fact_table
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
+from neuralmls.weights.softmax import softmax
+
+if TYPE_CHECKING:
+    from neuralmls.figures.picture import Picture
+    from neuralmls.figures.render import View
 
 KINDS: dict[str, type[Weights]] = {
     kind._kind: kind for kind in (NeuralWeights, ShapeAwareWeights, InverseDistanceWeights)
@@ -225,6 +231,9 @@ class Session:
         seed = self.settings["weights"]["seed"]
         weights = ShapeAwareWeights.fit(self.points.sources, x, faces, bounds=bounds, seed=seed, progress=progress)
         return Map._of(_core.Map.of(self._core.with_frame(np.ascontiguousarray(bounds)), weights._core))
+
+    def _repr_html_(self) -> str:
+        return fact_table("Session", _facts(self)) + self.points._repr_html_()
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored_session, (self._core.to_json(), self._notes)
@@ -436,6 +445,59 @@ class Map:
         x, triangles = self._surface(shape, faces)
         return Look(*self._core.look(x, as_indices(triangles, len(x))))
 
+    def plot(
+        self,
+        shape: Shape | ArrayLike,
+        faces: ArrayLike | None = None,
+        *,
+        heat: str | int | None = None,
+        **view: Unpack[View],
+    ) -> Picture:
+        """Return a picture of a shape at rest and deformed, which a notebook shows; `.write("map.png")` keeps it.
+
+        The control points are drawn as balls, at rest with arrows to their targets. No display is needed.
+
+        Parameters
+        ----------
+        shape : Shape, or points (n, d)
+        faces : (f, 3) integers, optional
+            Triangles of the points; without them they are drawn as a cloud.
+        heat : str or int, optional
+            What the shape is coloured by, from light to dark: a control point's name or number (from 0), for its weight
+            `softmax(logits / T)`, 0 to 1; or "displacement", for how far each point moves, `|y - x|`, 0 to the most.
+        azimuth, elevation : float, degrees
+            Where the camera stands: turned from the front to the shape's left, risen from the ground.
+        up : "y" or "z"
+            The axis that is drawn upwards.
+        width : int, pixels
+
+        Raises
+        ------
+        NeuralMLSError
+            PyVista is not installed (the extra `figures`), or cannot draw on this machine.
+        ArgumentError
+            There is no such control point; the points are no finite points of the map's dimension.
+
+        Examples
+        --------
+        >>> points = ControlPoints([[0.0, 0, 0], [1, 0, 0]]).moved({"p2": [0, 0.5, 0]})
+        >>> map = Session(points, weights="inverse-distance").fit()
+        >>> map.plot(points.sources, heat="p2")                               # doctest: +SKIP
+        """
+        from neuralmls.figures.plots import of_map
+
+        x, triangles = self._surface(shape, faces)
+        temperature = self.session.settings["temperature"]
+        return of_map(
+            x,
+            np.asarray(self.at(x), dtype=np.float64),
+            triangles,
+            self.session.points,
+            heat,
+            lambda: softmax(self.weights.logits(x), temperature),
+            **view,
+        )
+
     def _surface(
         self, shape: Shape | ArrayLike, faces: ArrayLike | None
     ) -> tuple[NDArray[np.float64], ArrayLike | None]:
@@ -480,8 +542,26 @@ class Map:
         except FileError as error:
             raise FileError(f"{path}: {error}") from None
 
+    def _repr_html_(self) -> str:
+        weights, facts = self.weights, _facts(self.session)
+        if isinstance(weights, NeuralWeights):
+            facts.append(("trained", f"{weights.steps} steps, mean cross-entropy {weights.loss:.3g}"))
+        return fact_table("Map", facts) + self.session.points._repr_html_()
+
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored_map, (self._core.to_bytes(),)
+
+
+def _facts(session: Session) -> list[tuple[str, str]]:
+    """The settings as a table of them: the weights with those of their parameters that are set."""
+    said, frame = session.settings, session.frame
+    parameters = {name: value for name, value in said.pop("weights").items() if name != "kind" and value is not None}
+    listed = ", ".join(f"{name} {value}" for name, value in parameters.items())
+    box = (
+        "that of the shapes of fit" if frame is None else " to ".join(str(corner.round(4).tolist()) for corner in frame)
+    )
+    weights = f"{session.weights} ({listed})" if listed else session.weights
+    return [("weights", weights), *((name, str(value)) for name, value in said.items()), ("frame", box)]
 
 
 def _restored_session(text: str, notes: tuple[str, ...]) -> Session:
