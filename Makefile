@@ -13,7 +13,7 @@ COMMA := ,
 
 .PHONY: demo test bench rust rust-format rust-lint rust-test rust-simd wasm wasm-target package
 .PHONY: python python-lint python-types python-test editor editor-build editor-test editor-types editor-unit editor-e2e
-.PHONY: wheels wheels-build wheels-test fuzz tools node clean
+.PHONY: wheels wheels-build wheels-test notebooks fuzz tools node clean
 
 demo: .venv/figures.stamp
 	$(BIN)/neuralmls demo -o out --force
@@ -88,6 +88,10 @@ python-types: .venv/test.stamp
 
 python-test: .venv/test.stamp
 	$(BIN)/python -m pytest
+
+# Runs the sources in docs/notebooks, and writes what comes of them beside them.
+notebooks: .venv/test.stamp
+	$(BIN)/python tools/notebooks.py
 
 # What is put on PyPI: a wheel for every Linux with glibc 2.28 and every Python from 3.11 on, and the sources with the built editor.
 wheels: editor

@@ -18,24 +18,44 @@ RUSTFLAGS="$flags" cargo build --release --quiet --target "$host" "${targets[@]/
 built=${CARGO_TARGET_DIR:-target}/$host/release
 
 python3 seeds.py corpus
+mkdir -p artifacts
 # A backtrace reads the whole program's symbols, which is more than the targets allow themselves.
 export RUST_BACKTRACE=0
-failed=()
-for target in "${targets[@]}"; do
+
+# One target; what it says is kept, and told once it is its turn.
+fuzz() {
+    local target=$1 log="artifacts/$1.log" status=0
     mkdir -p "artifacts/$target"
-    log="artifacts/$target.log"
     echo "== $target, $seconds s"
-    if ! "$built/$target" "corpus/$target" -seed="${FUZZ_SEED:-1}" -max_total_time="$seconds" -max_len=4096 -rss_limit_mb=512 \
-        -malloc_limit_mb=256 -timeout=10 -artifact_prefix="artifacts/$target/" -print_final_stats=1 >"$log" 2>&1; then
-        failed+=("$target")
-        tail -n 40 "$log"
-    fi
+    "$built/$target" "corpus/$target" -seed="${FUZZ_SEED:-1}" -max_total_time="$seconds" -max_len=4096 -rss_limit_mb=512 \
+        -malloc_limit_mb=256 -timeout=10 -artifact_prefix="artifacts/$target/" -print_final_stats=1 >"$log" 2>&1 || status=1
+    [ $status -eq 0 ] || tail -n 40 "$log"
+    local first last runs
     first=$(grep -m1 -o 'INITED cov: [0-9]*' "$log" || true)
     last=$(grep -o 'cov: [0-9]*' "$log" | tail -n 1 || true)
     runs=$(grep -o 'stat::number_of_executed_units: *[0-9]*' "$log" | grep -o '[0-9]*$' || true)
     echo "   ${first:-no coverage} -> ${last:-none}, ${runs:-0} runs"
-    # Without feedback it would find nothing and seem fine.
-    [ -n "$last" ] || failed+=("$target: no coverage feedback")
+    if [ -z "$last" ]; then # without feedback it would find nothing and seem fine
+        echo "   no coverage feedback"
+        status=1
+    fi
+    return $status
+}
+
+# As many at once as there are processors, in the order of the list.
+workers=$(nproc)
+failed=()
+for ((i = 0; i < ${#targets[@]}; i += workers)); do
+    batch=("${targets[@]:i:workers}")
+    running=()
+    for target in "${batch[@]}"; do
+        fuzz "$target" >"artifacts/$target.said" 2>&1 &
+        running+=($!)
+    done
+    for j in "${!batch[@]}"; do
+        wait "${running[j]}" || failed+=("${batch[j]}")
+        cat "artifacts/${batch[j]}.said"
+    done
 done
 if [ ${#failed[@]} -gt 0 ]; then
     echo "fuzzing found something in: ${failed[*]} (inputs in fuzz/artifacts)" >&2

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import neuralmls as nm
-from neuralmls.handles import Transform
+from neuralmls.settings import Transform
 
 CASES = ["ShapeNetChair1", "ShapeNetChair3", "ShapeNetPlane1", "ShapeNetPlane2"]
 # A bar of 4 x 1 x 1 as a grid of points, and control points along it.

@@ -124,11 +124,6 @@ def test_what_is_private_is_known_from_what_is_public():
         assert not is_public(module, name, modules), (module, name)
 
 
-def test_the_versions_of_the_packages_are_one():
-    research = tomllib.loads((ROOT / "research" / "pyproject.toml").read_text())
-    assert research["project"]["version"] == neuralmls.__version__
-
-
 def test_every_line_is_about_something_that_is_there():
     for name in allowed():
         assert (ROOT / name).is_dir() or name in parts() or (PACKAGE / f"{name}.pyi").is_file(), name

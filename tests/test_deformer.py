@@ -52,6 +52,23 @@ def test_any_object_with_logits_is_a_weight_function():
     assert np.allclose(y, [[0.1], [1.9]])
 
 
+@pytest.mark.parametrize("handles", ["auto", "exact", "soft", 0.5])
+def test_logits_of_someones_own_are_taken_as_closely_as_those_of_the_package(handles):
+    x, (p, q) = RNG.uniform(-1, 1, (20, 3)), RNG.uniform(-1, 1, (2, 5, 3))
+    own = nm.InverseDistanceWeights(p, epsilon=0.01)
+
+    class Same:
+        control_points = p
+
+        def logits(self, x, progress=None):
+            return own.logits(x)
+
+    rotations = np.full((5, 3, 3), np.nan)
+    rotations[0] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+    options = {"handles": handles, "transform": "similarity", "temperature": 0.5, "rotations": rotations}
+    assert np.array_equal(nm.deform(x, p, q, weights=Same(), **options), nm.deform(x, p, q, weights=own, **options))
+
+
 def test_maps_are_returned_when_asked():
     p = RNG.uniform(-1, 1, (5, 3))
     deformer = nm.Deformer(p, nm.InverseDistanceWeights(p), transform="rigid")
@@ -201,7 +218,7 @@ def test_other_threads_run_during_a_long_call():
         ({"transform": "bend"}, "transform: expected rigid or similarity or affine, found 'bend'"),
         ({"transform": None}, "transform: expected a setting, found None"),
         ({"seed": -1}, "seed: expected a whole number from 0"),
-        ({"seed": 0.5}, "seed: expected a whole number, found 0.5"),
+        ({"seed": 0.5}, "seed: expected a whole number from 0 to 18446744073709551615, found 0.5"),
     ],
 )
 def test_wrong_arguments_are_refused_in_a_sentence(change, sentence):

@@ -190,6 +190,6 @@ def test_files_of_other_kinds_are_refused_and_nothing_is_executed(data, tmp_path
 
 
 def test_a_folder_a_pipe_and_nothing_are_refused(tmp_path):
-    for path in (tmp_path, tmp_path / "none.map"):
-        with pytest.raises(nm.FileError, match="cannot read"):
-            nm.Map.load(path)
+    for name, sentence in (("", "cannot read: Is a directory"), ("none.map", "none.map: there is no such file")):
+        with pytest.raises(nm.FileError, match=sentence):
+            nm.Map.load(tmp_path / name)

@@ -10,11 +10,10 @@ from numpy.typing import ArrayLike
 from neuralmls.arrays import as_points
 from neuralmls.control_points import ControlPoints
 from neuralmls.errors import ArgumentError
-from neuralmls.handles import Transform
 from neuralmls.orientations import Orientation, Rotations, Scales, as_orientations
 from neuralmls.report import Advice
 from neuralmls.session import Map, Session
-from neuralmls.settings import Handles
+from neuralmls.settings import Handles, Transform
 from neuralmls.weights import Weights
 
 
@@ -95,14 +94,14 @@ def fitted(
         raise ArgumentError(f"targets: expected {len(p)} of them, found {len(q)}")
     if names is not None and len(names) != len(p):
         raise ArgumentError(f"names: expected {len(p)} of them, found {len(names)}")
-    points = ControlPoints(p, q, names, _orientations(rotations, scales, *p.shape))
+    points = ControlPoints(p, q, names, orientations(rotations, scales, *p.shape))
     kind = weights._kind
     session = Session(points, weights=kind, transform=transform, temperature=temperature, handles=handles)  # type: ignore[arg-type]
     return Map.of(session, weights)
 
 
-def _orientations(rotations: Rotations, scales: Scales, count: int, dimension: int) -> list[Orientation | None] | None:
-    """Scaled rotation matrices as what control points carry."""
+def orientations(rotations: Rotations, scales: Scales, count: int, dimension: int) -> list[Orientation | None] | None:
+    """Return scaled rotation matrices, as `Deformer.deform` has them, as what control points carry."""
     scaled = as_orientations(rotations, scales, count, dimension)
     if scaled is None:
         return None

@@ -13,6 +13,7 @@ from neuralmls import _core, session_files
 from neuralmls.arrays import as_points
 from neuralmls.errors import ArgumentError, ControlPointError
 from neuralmls.orientations import Orientation
+from neuralmls.tables import rows_table
 
 
 class ControlPoints:
@@ -210,12 +211,29 @@ class ControlPoints:
         """
         return self._core.check(as_points("bounds", bounds))
 
+    def _repr_html_(self) -> str:
+        p, q = self.sources, self.targets
+        head = ["name", "at rest", "target", "moved"]
+        columns: list[list[str]] = [list(self.names), _said(p), _said(q), _said(np.linalg.norm(q - p, axis=1)[:, None])]
+        if self.is_oriented:
+            head.append("orientation")
+            columns.append(["" if one is None else str(one) for one in self.orientations])
+        if (self.weights != 1).any():
+            head.append("weight")
+            columns.append(_said(self.weights[:, None]))
+        return rows_table(f"{len(self)} control points", head, list(zip(*columns, strict=True)))
+
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (_core.Session(self._core).to_json(),)
 
 
 def _restored(text: str) -> ControlPoints:
     return ControlPoints._of(_core.Read(text.encode(), "points.json").session.points)
+
+
+def _said(rows: NDArray[np.float64]) -> list[str]:
+    """The numbers of each row, for a person to read."""
+    return [", ".join(f"{value:.4g}" for value in row) for row in rows]
 
 
 def _fixed(array: NDArray[np.float64]) -> NDArray[np.float64]:

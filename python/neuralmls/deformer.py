@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from neuralmls import _core
 from neuralmls.arrays import Progress, as_number, as_points
 from neuralmls.errors import ArgumentError
-from neuralmls.handles import ExactHandles, Transform
+from neuralmls.handles import ExactHandles
 from neuralmls.orientations import Rotations, Scales, as_orientations
 from neuralmls.point_tree import PointTree
+from neuralmls.settings import Transform
 from neuralmls.weights import HasLogits, Weights
 
 Floats: TypeAlias = NDArray[np.floating]

@@ -54,6 +54,24 @@ def read_bytes(path: Path, *, links: bool = True) -> bytes:
         return file.read()
 
 
+def read_file(path: str | os.PathLike[str]) -> bytes:
+    """Return the content of a file that a person named.
+
+    Raises
+    ------
+    FileError
+        It is missing, or cannot be read; the message names it.
+    ArgumentError
+        `path` is none.
+    """
+    try:
+        return read_bytes(as_path("path", path))
+    except FileNotFoundError as error:
+        raise FileError(f"{path}: there is no such file") from error
+    except OSError as error:
+        raise FileError(f"{path}: cannot read: {error.strerror or error}") from error
+
+
 def read_standard_input() -> bytes:
     """Return all that comes from standard input.
 

@@ -12,11 +12,10 @@ from neuralmls import _core
 from neuralmls.arrays import as_number, as_points
 from neuralmls.errors import ArgumentError
 from neuralmls.orientations import Rotations, Scales, as_orientations
+from neuralmls.settings import Transform
 from neuralmls.weights import HasLogits, Weights
 
 Array: TypeAlias = NDArray[np.float64]
-# What may happen to a shape locally.
-Transform: TypeAlias = Literal["rigid", "similarity", "affine"]
 
 
 @dataclass(frozen=True)
@@ -198,10 +197,7 @@ class ExactHandles:
             As `aim`.
         """
         checked = self._checked(targets, temperature, rotations, scales)
-        found = self._core.remedy(*checked, as_adherence(adherence, len(self._p)))
-        if found is None:
-            return None
-        return "with the affine transform" if found[1] is None else f"at temperature {found[1]:g}"
+        return self._core.remedy(*checked, as_adherence(adherence, len(self._p)))
 
     def _checked(
         self, targets: ArrayLike, temperature: float, rotations: Rotations, scales: Scales

@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from neuralmls.advice import fitted
+from neuralmls.advice import fitted, orientations
 from neuralmls.arrays import as_points, box_around
+from neuralmls.control_points import ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ArgumentError
-from neuralmls.handles import ExactHandles, Transform
+from neuralmls.handles import ExactHandles
 from neuralmls.orientations import Rotations, Scales
-from neuralmls.settings import Handles, WeightsName
+from neuralmls.session import Session
+from neuralmls.settings import Handles, Transform, WeightsName
 from neuralmls.weights import HasLogits, InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
 
 
@@ -31,44 +33,43 @@ def deform(
 ) -> Floats:
     """Deform the points `x` so that the control points `p` move to `q`: what `neuralmls deform` does, in one call.
 
-        To move them again and again, fit once: `Session(ControlPoints(p)).fit(x)`, or bind once: `Deformer`.
+    To move them again and again, fit once: `Session(ControlPoints(p)).fit(x)`, or bind once: `Deformer`.
 
-        Parameters
-        ----------
-        x : (n, d), d = 1, 2 or 3
-            Points: float32 or float64, of any memory layout; never changed.
-        p, q : (m, d)
-            Control points at rest and moved, in the coordinates of `x`.
-        rotations : (m, d, d), scales : (m,), optional
-            How control points turn, and how much larger their surroundings become; None for those that only move (see
-            `Deformer.deform`).
-        weights : "neural", "shape-aware", "inverse-distance", or a weight function of the control points `p`
-        faces : (f, 3) integers, optional
-            Triangles of the points, for shape-aware weights; without them the points are a cloud.
-        transform : "rigid", "similarity" or "affine"
-        temperature : float > 0
-        handles : "auto", "exact", "soft", or a number from 0 to 1
-            How closely the control points arrive at their targets (see `Session`). "soft" is the paper's way, in which
-            they stop near them.
-        seed : int
-            Of the network's training (neural and shape-aware weights).
+    Parameters
+    ----------
+    x : (n, d), d = 1, 2 or 3
+        Points: float32 or float64, of any memory layout; never changed.
+    p, q : (m, d)
+        Control points at rest and moved, in the coordinates of `x`.
+    rotations : (m, d, d), scales : (m,), optional
+        How control points turn, and how much larger their surroundings become; None for those that only move (see
+        `Deformer.deform`).
+    weights : "neural", "shape-aware", "inverse-distance", or a weight function of the control points `p`
+    faces : (f, 3) integers, optional
+        Triangles of the points, for shape-aware weights; without them the points are a cloud.
+    transform : "rigid", "similarity" or "affine"
+    temperature : float > 0
+    handles : "auto", "exact", "soft", or a number from 0 to 1
+        How closely the control points arrive at their targets (see `Session`). "soft" is the paper's way, in which
+        they stop near them.
+    seed : int
+        Of the network's training (neural and shape-aware weights).
 
-        Returns
-        -------
-        (n, d), float32 if `x` was, else float64
+    Returns
+    -------
+    (n, d), float32 if `x` was, else float64
 
-    '''
-        Raises
-        ------
-        ArgumentError
-            An argument is out of its range, or does not fit another.
-        NeuralMLSError
-            Shape-aware weights need SciPy, and it is not installed.
+    Raises
+    ------
+    ArgumentError
+        An argument is out of its range, or does not fit another.
+    NeuralMLSError
+        Shape-aware weights need SciPy, and it is not installed.
 
-        Examples
-        --------
-        >>> deform([[0.0], [1.0], [2.0]], [[0.0], [2.0]], [[1.0], [3.0]], weights="inverse-distance").tolist()
-        [[1.0], [2.0], [3.0]]
+    Examples
+    --------
+    >>> deform([[0.0], [1.0], [2.0]], [[0.0], [2.0]], [[1.0], [3.0]], weights="inverse-distance").tolist()
+    [[1.0], [2.0], [3.0]]
     """
     sources = as_points("p", p)
     targets = as_points("q", q, sources.shape[1])
@@ -105,9 +106,8 @@ def deform(
         )
         return map.at(x)
     # Logits of someone's own: the same steps, of which a map would keep the weights.
-    solver = ExactHandles(function, transform=transform)
-    share = {"auto": 1.0, "exact": 1.0, "soft": 0.0}.get(handles, handles) if isinstance(handles, str) else handles
-    solve = solver.aim if handles == "exact" else solver.aim_carefully
-    aim = solve(targets, temperature, share, rotations=rotations, scales=scales)
+    posed = ControlPoints(sources, targets, orientations=orientations(rotations, scales, *sources.shape))
+    session = Session(posed, transform=transform, temperature=temperature, handles=handles)
+    aimed = session._core.aim(ExactHandles(function, transform=transform)._core)
     deformer = Deformer(x, function, transform=transform)
-    return deformer.deform(aim.targets, temperature, rotations=rotations, scales=scales)
+    return deformer.deform(aimed, temperature, rotations=posed.rotations, scales=posed.scales)

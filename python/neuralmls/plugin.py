@@ -3,7 +3,7 @@
 from neuralmls.arrays import Progress, as_number, as_points, as_triangles, box_around
 from neuralmls.extras import RESEARCH
 from neuralmls.files import as_path, write_atomically
-from neuralmls.handles import Transform
+from neuralmls.settings import Transform
 
 __all__ = [
     "RESEARCH",

@@ -25,6 +25,8 @@ class Report:
         How closely they were met, in a few words.
     soft : str or None
         Why all were left soft although more was asked for, and what would help.
+    not_arrived : str or None
+        The one of the warnings that control points do not arrive, which advice of kind "misses" says too.
     warnings : tuple of str
     """
 
@@ -34,6 +36,7 @@ class Report:
     orientations: tuple[tuple[float, float, float] | None, ...]
     handles: str
     soft: str | None
+    not_arrived: str | None
     warnings: tuple[str, ...]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable
-from typing import Any, Literal, Self, overload
+from typing import TYPE_CHECKING, Any, Literal, Self, Unpack, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,14 +16,19 @@ from neuralmls.arrays import Progress, as_box, as_points, box_around
 from neuralmls.control_points import ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
-from neuralmls.files import as_path, read_bytes, write_atomically
-from neuralmls.handles import Transform
+from neuralmls.files import read_file, write_atomically
 from neuralmls.placement import as_indices
 from neuralmls.report import Advice, Look, Report
-from neuralmls.settings import Handles, WeightsName, changes_of
+from neuralmls.settings import Handles, Transform, WeightsName, changes_of
 from neuralmls.shape import Shape
 from neuralmls.shapes_together import box_of, together
+from neuralmls.tables import fact_table
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
+from neuralmls.weights.softmax import softmax
+
+if TYPE_CHECKING:
+    from neuralmls.figures.picture import Picture
+    from neuralmls.figures.render import View
 
 KINDS: dict[str, type[Weights]] = {
     kind._kind: kind for kind in (NeuralWeights, ShapeAwareWeights, InverseDistanceWeights)
@@ -215,17 +220,20 @@ class Session:
             Shape-aware weights need SciPy, and it is not installed.
         """
         dimension = self.points.dimension
-        boxes = [box_of(shape, dimension) for shape in shapes]
-        bounds = as_box(box_around(np.concatenate(boxes)), dimension) if boxes else None
+        boxes, bounds = [box_of(shape, dimension) for shape in shapes], self.frame
+        if boxes and bounds is None:
+            bounds = as_box(box_around(np.concatenate(boxes)), dimension)
         if self.weights != "shape-aware":
             return Map._of(self._core.fit(bounds, progress))
-        if bounds is None:
+        if not shapes or bounds is None:
             raise ArgumentError("shapes: shape-aware weights need at least one shape to learn from")
-        frame = self.frame if self.frame is not None else bounds
         x, faces = together(shapes, dimension)
         seed = self.settings["weights"]["seed"]
-        weights = ShapeAwareWeights.fit(self.points.sources, x, faces, bounds=frame, seed=seed, progress=progress)
-        return Map._of(_core.Map.of(self._core.with_frame(np.ascontiguousarray(frame)), weights._core))
+        weights = ShapeAwareWeights.fit(self.points.sources, x, faces, bounds=bounds, seed=seed, progress=progress)
+        return Map._of(_core.Map.of(self._core.with_frame(np.ascontiguousarray(bounds)), weights._core))
+
+    def _repr_html_(self) -> str:
+        return fact_table("Session", _facts(self)) + self.points._repr_html_()
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored_session, (self._core.to_json(), self._notes)
@@ -274,6 +282,11 @@ class Map:
         """The weights."""
         core = self._core.weights
         return KINDS[core.kind]._of(core)
+
+    @property
+    def side(self) -> float:
+        """What lengths are measured by: the longest side of the box in which the weights were trained."""
+        return self._core.side
 
     def with_session(self, session: Session) -> Map:
         """Return the map of another session with the same weights: other targets, transform, temperature, handles.
@@ -353,8 +366,7 @@ class Map:
             They are no finite points of the map's dimension.
         """
         x = shape.positions if isinstance(shape, Shape) else shape
-        transform = json.loads(self._core.session.settings)["transform"]
-        return Deformer(x, self.weights, transform=transform, progress=progress)
+        return Deformer(x, self.weights, transform=self.session.settings["transform"], progress=progress)
 
     def frame(
         self,
@@ -388,6 +400,7 @@ class Map:
             tuple(core.orientations),
             core.handles,
             core.soft,
+            core.not_arrived,
             tuple(core.warnings),
         )
 
@@ -413,8 +426,7 @@ class Map:
         ArgumentError
             There are no points, or a face names none.
         """
-        x = shape.positions if isinstance(shape, Shape) else as_points("x", shape, self.session.points.dimension)
-        triangles = shape.faces if isinstance(shape, Shape) else faces
+        x, triangles = self._surface(shape, faces)
         other = None if isinstance(self.weights, ShapeAwareWeights) else lambda: self._shape_aware(x, triangles)
         names = self._core.session.points.names
         return [
@@ -430,9 +442,69 @@ class Map:
         ArgumentError
             There are no points, or a face names none.
         """
-        x = shape.positions if isinstance(shape, Shape) else as_points("x", shape, self.session.points.dimension)
-        triangles = shape.faces if isinstance(shape, Shape) else faces
+        x, triangles = self._surface(shape, faces)
         return Look(*self._core.look(x, as_indices(triangles, len(x))))
+
+    def plot(
+        self,
+        shape: Shape | ArrayLike,
+        faces: ArrayLike | None = None,
+        *,
+        heat: str | int | None = None,
+        **view: Unpack[View],
+    ) -> Picture:
+        """Return a picture of a shape at rest and deformed, which a notebook shows; `.write("map.png")` keeps it.
+
+        The control points are drawn as balls, at rest with arrows to their targets. No display is needed.
+
+        Parameters
+        ----------
+        shape : Shape, or points (n, d)
+        faces : (f, 3) integers, optional
+            Triangles of the points; without them they are drawn as a cloud.
+        heat : str or int, optional
+            What the shape is coloured by, from light to dark: a control point's name or number (from 0), for its weight
+            `softmax(logits / T)`, 0 to 1; or "displacement", for how far each point moves, `|y - x|`, 0 to the most.
+        azimuth, elevation : float, degrees
+            Where the camera stands: turned from the front to the shape's left, risen from the ground.
+        up : "y" or "z"
+            The axis that is drawn upwards.
+        width : int, pixels
+
+        Raises
+        ------
+        NeuralMLSError
+            PyVista is not installed (the extra `figures`), or cannot draw on this machine.
+        ArgumentError
+            There is no such control point; the points are no finite points of the map's dimension.
+
+        Examples
+        --------
+        >>> points = ControlPoints([[0.0, 0, 0], [1, 0, 0]]).moved({"p2": [0, 0.5, 0]})
+        >>> map = Session(points, weights="inverse-distance").fit()
+        >>> map.plot(points.sources, heat="p2")                               # doctest: +SKIP
+        """
+        from neuralmls.figures.plots import of_map
+
+        x, triangles = self._surface(shape, faces)
+        temperature = self.session.settings["temperature"]
+        return of_map(
+            x,
+            np.asarray(self.at(x), dtype=np.float64),
+            triangles,
+            self.session.points,
+            heat,
+            lambda: softmax(self.weights.logits(x), temperature),
+            **view,
+        )
+
+    def _surface(
+        self, shape: Shape | ArrayLike, faces: ArrayLike | None
+    ) -> tuple[NDArray[np.float64], ArrayLike | None]:
+        """The points and triangles that are looked at."""
+        if isinstance(shape, Shape):
+            return shape.positions, shape.faces
+        return as_points("x", shape, self.session.points.dimension), faces
 
     def _shape_aware(self, x: NDArray[np.float64], faces: ArrayLike | None) -> core.Map | None:
         """The same with weights that know the shape; None where they cannot be fitted."""
@@ -464,15 +536,32 @@ class Map:
         FileError
             The file is missing, or is no map.
         """
+        data = read_file(path)
         try:
-            return cls._of(_core.Map.from_bytes(read_bytes(as_path("path", path))))
-        except OSError as error:
-            raise FileError(f"{path}: cannot read: {error.strerror or error}") from error
+            return cls._of(_core.Map.from_bytes(data))
         except FileError as error:
             raise FileError(f"{path}: {error}") from None
 
+    def _repr_html_(self) -> str:
+        weights, facts = self.weights, _facts(self.session)
+        if isinstance(weights, NeuralWeights):
+            facts.append(("trained", f"{weights.steps} steps, mean cross-entropy {weights.loss:.3g}"))
+        return fact_table("Map", facts) + self.session.points._repr_html_()
+
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored_map, (self._core.to_bytes(),)
+
+
+def _facts(session: Session) -> list[tuple[str, str]]:
+    """The settings as a table of them: the weights with those of their parameters that are set."""
+    said, frame = session.settings, session.frame
+    parameters = {name: value for name, value in said.pop("weights").items() if name != "kind" and value is not None}
+    listed = ", ".join(f"{name} {value}" for name, value in parameters.items())
+    box = (
+        "that of the shapes of fit" if frame is None else " to ".join(str(corner.round(4).tolist()) for corner in frame)
+    )
+    weights = f"{session.weights} ({listed})" if listed else session.weights
+    return [("weights", weights), *((name, str(value)) for name, value in said.items()), ("frame", box)]
 
 
 def _restored_session(text: str, notes: tuple[str, ...]) -> Session:

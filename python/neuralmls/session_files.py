@@ -7,7 +7,7 @@ from pathlib import Path
 
 from neuralmls import _core
 from neuralmls.errors import ControlPointError, FileError
-from neuralmls.files import as_path, read_bytes, read_standard_input, write_atomically
+from neuralmls.files import as_path, read_file, read_standard_input, write_atomically
 
 STANDARD_INPUT = Path("-")
 
@@ -22,16 +22,9 @@ def read(path: str | os.PathLike[str]) -> _core.Read:
     ControlPointError
         It is well-formed, but its control points cannot be used.
     """
-    source = as_path("path", path)
-    if source == STANDARD_INPUT:
+    if as_path("path", path) == STANDARD_INPUT:
         return decode(read_standard_input(), "standard input")
-    try:
-        data = read_bytes(source)
-    except FileNotFoundError as error:
-        raise FileError(f"{path}: there is no such file") from error
-    except OSError as error:
-        raise FileError(f"{path}: cannot read: {error.strerror or error}") from error
-    return decode(data, path)
+    return decode(read_file(path), path)
 
 
 def decode(data: bytes, path: str | os.PathLike[str]) -> _core.Read:

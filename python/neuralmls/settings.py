@@ -1,17 +1,19 @@
-"""Settings of a session as keywords: handed on as a session file has them, since the core checks those."""
+"""Settings of a session as keywords: handed on as a session file has them, since the core checks those.
+
+The command line takes the names from here before anything else is imported: numpy is not.
+"""
 
 from __future__ import annotations
 
 import json
-import math
+from numbers import Integral, Real
 from typing import Any, Literal, TypeAlias
 
-import numpy as np
-
-from neuralmls.errors import ArgumentError
-
 WeightsName: TypeAlias = Literal["neural", "shape-aware", "inverse-distance"]
-Handles: TypeAlias = Literal["auto", "exact", "soft"] | float
+# What may happen to a shape locally.
+Transform: TypeAlias = Literal["rigid", "similarity", "affine"]
+HandlesName: TypeAlias = Literal["auto", "exact", "soft"]
+Handles: TypeAlias = HandlesName | float
 
 PARAMETERS = ("width", "steps", "seed", "rate", "fourier_sigma", "alpha", "epsilon")
 
@@ -21,18 +23,17 @@ def changes_of(weights: str | None, parameters: dict[str, float | None], **other
     unknown = parameters.keys() - set(PARAMETERS)
     if unknown:
         raise TypeError(f"unexpected keyword argument '{min(unknown)}'")
-    changes = {name: _plain(name, value) for name, value in others.items()}
-    chosen = {name: _plain(name, value) for name, value in parameters.items() if value is not None}
+    changes = dict(others)
+    chosen: dict[str, Any] = {name: value for name, value in parameters.items() if value is not None}
     if weights is not None:
-        chosen["kind"] = _plain("weights", weights)
+        chosen["kind"] = weights
     if chosen:
         changes["weights"] = chosen
-    return json.dumps(changes)
+    return json.dumps(changes, default=_plain)
 
 
-def _plain(name: str, value: Any) -> Any:
-    """A number or name as JSON can hold it; the core says what is wrong with any other."""
-    plain = value.item() if isinstance(value, np.generic) else value
-    if not isinstance(plain, (str, int, float)) or (isinstance(plain, float) and not math.isfinite(plain)):
-        raise ArgumentError(f"{name}: expected a finite number or a name, found {value!r}")
-    return plain
+def _plain(value: Any) -> Any:
+    """A number of another library as JSON can hold it, and the words for anything else, which the core refuses."""
+    if isinstance(value, Integral):
+        return int(value)
+    return float(value) if isinstance(value, Real) else repr(value)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from pathlib import Path
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +14,13 @@ from neuralmls import _core
 from neuralmls.arrays import as_points
 from neuralmls.companions import Companions, find_beside, make_folders, read_beside, to_copy
 from neuralmls.errors import ArgumentError, FileError
-from neuralmls.files import as_path, read_bytes, write_together
+from neuralmls.files import as_path, read_file, write_together
+from neuralmls.tables import fact_table
+
+if TYPE_CHECKING:
+    from neuralmls.control_points import ControlPoints
+    from neuralmls.figures.picture import Picture
+    from neuralmls.figures.render import View
 
 
 class Shape:
@@ -105,6 +112,41 @@ class Shape:
     def side_files(self, stem: str) -> list[str]:
         """The files (glTF buffers) that `write` may write beside a file called after `stem` if the shape has moved."""
         return self._file.side_files(_sayable(stem))
+
+    def plot(self, points: ControlPoints | None = None, **view: Unpack[View]) -> Picture:
+        """Return a picture of the shape, which a notebook shows; `.write("shape.png")` keeps it. No display is needed.
+
+        Parameters
+        ----------
+        points : ControlPoints, optional
+            Drawn as balls where they are at rest, with arrows to their targets.
+        azimuth, elevation : float, degrees
+            Where the camera stands: turned from the front to the shape's left, risen from the ground.
+        up : "y" or "z"
+            The axis that is drawn upwards.
+        width : int, pixels
+
+        Raises
+        ------
+        NeuralMLSError
+            PyVista is not installed (the extra `figures`), or cannot draw on this machine.
+        ArgumentError
+            The shape has no positions, or the width or `up` is none.
+
+        Examples
+        --------
+        >>> import neuralmls as nm
+        >>> nm.read("chair.obj").plot(nm.ControlPoints.read("points.json"), azimuth=60)  # doctest: +SKIP
+        """
+        from neuralmls.figures.plots import of_shape
+
+        return of_shape(self._positions, self._faces, self._path.name, points, **view)
+
+    def _repr_html_(self) -> str:
+        count = 0 if self._faces is None else len(self._faces)
+        size = " x ".join(f"{side:.6g}" for side in self._bounds[1] - self._bounds[0])
+        facts = [("vertices", f"{len(self._positions):,}"), ("triangles", f"{count:,}"), ("size", size)]
+        return fact_table(f"{_sayable(self._path.name)}: {self.format}", [*facts, *self.facts])
 
     def encode(
         self, positions: ArrayLike, *, maps: ArrayLike | None = None, stem: str | None = None
@@ -198,12 +240,7 @@ def read(path: str | os.PathLike[str]) -> Shape:
     ArgumentError
         `path` is none.
     """
-    source = as_path("path", path)
-    try:
-        data = read_bytes(source)
-    except OSError as error:
-        raise FileError(f"{source}: cannot read: {error.strerror or error}") from error
-    return decode(data, source)
+    return decode(read_file(path), Path(path))
 
 
 def decode(data: bytes, path: Path) -> Shape:

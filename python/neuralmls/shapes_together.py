@@ -21,7 +21,7 @@ def box_of(shape: Shape | ArrayLike, dimension: int) -> NDArray[np.float64]:
         There are no points, or they are of another dimension.
     """
     if isinstance(shape, Shape):
-        return shape.bounds
+        return as_points("shapes", shape.bounds, dimension)
     x = as_points("shapes", shape, dimension)
     if not len(x):
         raise ArgumentError("shapes: expected at least one point, found none")

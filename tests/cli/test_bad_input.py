@@ -46,8 +46,10 @@ def test_bad_shapes(refused, here, name, text, words):
 
 
 def test_missing_shape(refused):
-    refused(1, "deform", "none.obj", "--points", "points.csv", "-o", "out.obj", words=("none.obj", "No such file"))
-    refused(1, "inspect", "none.obj", words=("none.obj", "No such file"))
+    refused(
+        1, "deform", "none.obj", "--points", "points.csv", "-o", "out.obj", words=("none.obj", "there is no such file")
+    )
+    refused(1, "inspect", "none.obj", words=("none.obj", "there is no such file"))
 
 
 def test_folder_as_shape(refused, here):
@@ -115,9 +117,9 @@ CLASSIC = ("--weights", "inverse-distance")
     [
         (("--temperature", "0"), ("temperature", "above 0", "0")),
         (("--temperature", "-1"), ("temperature", "-1")),
-        (("--temperature", "nan"), ("temperature", "nan")),
+        (("--temperature", "nan"), ("temperature: expected a number above 0", "NaN")),
         ((*CLASSIC, "--alpha", "0"), ("alpha", "above 0")),
-        ((*CLASSIC, "--alpha", "inf"), ("alpha", "inf")),
+        ((*CLASSIC, "--alpha", "inf"), ("alpha: expected a number above 0", "Infinity")),
         ((*CLASSIC, "--epsilon", "-0.1"), ("epsilon", "at least 0", "-0.1")),
         (("--width", "0"), ("width", "1 to 16384")),
         (("--width", "1000000"), ("width", "1000000")),
@@ -151,7 +153,7 @@ CLASSIC = ("--weights", "inverse-distance")
         (("too", "many"), ("out.obj: expected a folder for 3 shapes",)),
         (("--handles", "hard"), ("--handles", "auto, exact, soft or a number", "'hard'")),
         (("--handles", "1.5"), ("handles", "at most 1", "1.5")),
-        (("--handles", "nan"), ("handles: expected a finite number", "nan")),
+        (("--handles", "nan"), ("handles: expected auto, exact, soft or a number", "at most 1", "NaN")),
     ],
 )
 def test_wrong_options(refused, options, words):

@@ -65,7 +65,7 @@ def test_the_browser_is_started_with_an_address_that_serves_once(built, run, mon
 def test_broken_input_is_refused_before_anything_is_served(built, refused):
     (built / "broken.obj").write_text("v 1 2\n")
     refused(1, "edit", "broken.obj", "--no-browser", words=("broken.obj", "line 1"))
-    refused(1, "edit", "missing.obj", "--no-browser", words=("missing.obj", "cannot read"))
+    refused(1, "edit", "missing.obj", "--no-browser", words=("missing.obj", "there is no such file"))
     refused(1, "edit", "shape.obj", "--points", "missing.csv", "--no-browser", words=("missing.csv",))
     refused(2, "edit", "--points", "points.csv", "--no-browser", words=("--points", "shape"))
     refused(2, "edit", "--port", "0", "--no-browser", words=("port",))

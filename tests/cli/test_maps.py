@@ -85,8 +85,14 @@ def test_other_control_points_need_a_fit(run, refused, here, moved):
 def test_what_is_no_map_is_refused(refused, here):
     (here / "no.map").write_text("nothing")
     refused(1, "deform", "shape.obj", "--map", "no.map", "-o", "out.obj", words=("no.map",))
-    refused(1, "deform", "shape.obj", "--map", "none.map", "-o", "out.obj", words=("none.map: cannot read",))
+    refused(1, "deform", "shape.obj", "--map", "none.map", "-o", "out.obj", words=("none.map: there is no such file",))
     refused(1, "deform", "shape.obj", "--map", "points.csv", "-o", "out.obj", words=("points.csv",))
+
+
+def test_a_map_in_the_place_of_control_points_is_called_one(run, refused, moved):
+    assert run(*FIT, *QUICK).code == 0
+    words = ("shape.map: this is a saved map, not control points", "--map")
+    refused(1, "deform", "shape.obj", "--points", "shape.map", "-o", "out.obj", words=words)
 
 
 def test_a_map_is_never_written_over_without_force(run, refused, here, moved):

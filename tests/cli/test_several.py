@@ -49,7 +49,7 @@ def test_people_read_of_each(run, here, cloud):
     ("name", "text", "words"),
     [
         ("broken.obj", "v 1 2\n", "broken.obj: line 1"),
-        ("missing.obj", None, "missing.obj: cannot read"),
+        ("missing.obj", None, "missing.obj: there is no such file"),
         ("flat.xyz", "0 0\n1 1\n0 1\n", "points.csv, for flat.xyz: "),
         ("one.xyz", "1 1 1\n", "one.xyz: there is only one vertex"),
     ],

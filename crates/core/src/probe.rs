@@ -56,20 +56,20 @@ pub fn places(x: &[f64], dim: usize, faces: &[[u32; 3]], count: usize) -> Result
     Ok(x.chunks_exact(dim).step_by(every).flatten().copied().collect())
 }
 
-impl Probe {
-    /// Where the weight function has to be asked: the places (k x dim), and those beside them; `side` is the shape's longest.
-    pub fn points(places: &[f64], dim: usize, side: f64) -> Vec<f64> {
-        let mut points = places.to_vec();
-        for axis in 0..dim {
-            for way in [1.0, -1.0] {
-                let from = points.len();
-                points.extend_from_slice(places);
-                points[from..].iter_mut().skip(axis).step_by(dim).for_each(|c| *c += way * STEP * side);
-            }
+/// The places (k x dim) and those beside them, where the weights have to be known; `side` is the shape's longest.
+fn with_those_beside(places: &[f64], dim: usize, side: f64) -> Vec<f64> {
+    let mut points = places.to_vec();
+    for axis in 0..dim {
+        for way in [1.0, -1.0] {
+            let from = points.len();
+            points.extend_from_slice(places);
+            points[from..].iter_mut().skip(axis).step_by(dim).for_each(|c| *c += way * STEP * side);
         }
-        points
     }
+    points
+}
 
+impl Probe {
     /// Binds `places` (k x dim) of a shape, whose longest side is `side`, to the control points of `weights`, which are taken to their targets as
     /// [`Handles::aim_carefully`] does if `careful`, else as [`Handles::aim`] does.
     ///
@@ -83,37 +83,18 @@ impl Probe {
         careful: bool,
     ) -> Result<Probe, Error> {
         let (p, dim) = (weights.control_points(), weights.dim());
-        check_points("places", places, dim)?;
-        let logits = weights.logits(&Probe::points(places, dim, side), &mut |_| true)?;
-        let own_logits = weights.logits(p, &mut |_| true)?;
-        Probe::of_logits(p, dim, places, side, logits, own_logits, transform, careful)
-    }
-
-    /// The same for the control points `p` (m x dim); `logits` are those of [`Probe::points`], `own_logits` those of the control points.
-    ///
-    /// # Errors
-    /// Where there is no place, or as [`Deformer::of_logits`].
-    #[allow(clippy::too_many_arguments)] // As weights would say it, which the caller has not.
-    pub fn of_logits(
-        p: &[f64],
-        dim: usize,
-        places: &[f64],
-        side: f64,
-        logits: Vec<f32>,
-        own_logits: Vec<f32>,
-        transform: Transform,
-        careful: bool,
-    ) -> Result<Probe, Error> {
         if check_points("places", places, dim)? == 0 {
             return Err(Error::argument("places", "expected at least one, found none"));
         }
+        let all = with_those_beside(places, dim, side);
+        let logits = weights.logits(&all, &mut |_| true)?;
         Ok(Probe {
             dim,
             side,
             p: p.to_vec(),
             places: places.to_vec(),
-            all: Deformer::of_logits(Probe::points(places, dim, side), dim, p, logits, transform)?,
-            handles: Handles::of_logits(p, dim, own_logits, transform)?,
+            all: Deformer::of_logits(all, dim, p, logits, transform)?,
+            handles: Handles::new(weights, transform)?,
             careful,
         })
     }

@@ -1,6 +1,6 @@
 //! Handles that arrive.
 
-use neuralmls_core::{Error, Pose, Remedy, Soft};
+use neuralmls_core::{Error, Pose, Soft};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -10,7 +10,7 @@ use crate::errors::from_core;
 
 /// Solves for effective targets.
 #[pyclass(frozen)]
-pub(crate) struct Handles(neuralmls_core::Handles);
+pub(crate) struct Handles(pub neuralmls_core::Handles);
 
 /// Effective targets m x d, how far each control point stays from where it was to go, and why they do not arrive: a reason, which
 /// control point, how much.
@@ -58,7 +58,7 @@ impl Handles {
         Ok((table(py, aim.targets, dim)?, PyArray1::from_vec(py, aim.misses), aim.soft.map(Soft::named)))
     }
 
-    /// A temperature, or none for the affine transform; none at all where neither helps.
+    /// With what the control points would arrive, in words; None where nothing that was tried helps.
     fn remedy(
         &self,
         py: Python<'_>,
@@ -66,14 +66,11 @@ impl Handles {
         orientations: Option<PyReadonlyArray3<'_, f64>>,
         temperature: f64,
         adherence: Vec<f64>,
-    ) -> PyResult<Option<(&'static str, Option<f64>)>> {
+    ) -> PyResult<Option<String>> {
         let pose = pose(&q, orientations.as_ref())?;
         let remedy = py
             .detach(|| self.0.remedy(pose, temperature, &adherence))
             .map_err(|error| from_core(error, None))?;
-        Ok(remedy.map(|remedy| match remedy {
-            Remedy::Temperature(other) => ("temperature", Some(other)),
-            Remedy::Affine => ("affine", None),
-        }))
+        Ok(remedy.map(neuralmls_session::remedy_in_words))
     }
 }

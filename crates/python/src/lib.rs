@@ -29,7 +29,7 @@ mod _core {
     #[pymodule_export]
     use crate::report::Report;
     #[pymodule_export]
-    use crate::session::{Map, Read, Session};
+    use crate::session::{check_size, longest_side, Map, Read, Session};
     #[pymodule_export]
     use crate::shape_file::ShapeFile;
     #[pymodule_export]

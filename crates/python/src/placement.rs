@@ -1,16 +1,12 @@
 //! Control points spread over a shape.
 
 use neuralmls_core::placement;
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
+use crate::arrays::table;
 use crate::errors::from_core;
 use crate::progress::run;
-
-fn points(py: Python<'_>, numbers: Vec<f64>, dim: usize) -> PyResult<Bound<'_, PyArray2<f64>>> {
-    let rows = numbers.len() / dim;
-    PyArray1::from_vec(py, numbers).reshape([rows, dim])
-}
 
 /// Places spread over points n x d and triangles f x 3 of them: count x d.
 #[pyfunction]
@@ -23,7 +19,7 @@ pub(crate) fn farthest_points<'py>(
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let (dim, x) = (x.shape()[1], x.as_slice()?);
     let (faces, _) = faces.as_slice()?.as_chunks::<3>();
-    points(py, run(py, None, |report| placement::farthest_points(x, dim, faces, count, seed, report))?, dim)
+    table(py, run(py, None, |report| placement::farthest_points(x, dim, faces, count, seed, report))?, dim)
 }
 
 /// The indices of points n x d that are spread evenly, at most `count`.
@@ -50,5 +46,5 @@ pub(crate) fn sample_surface<'py>(
     let (dim, x) = (x.shape()[1], x.as_slice()?);
     let (faces, _) = faces.as_slice()?.as_chunks::<3>();
     let places = py.detach(|| placement::sample_surface(x, dim, faces, count, seed));
-    points(py, places.map_err(|error| from_core(error, None))?, dim)
+    table(py, places.map_err(|error| from_core(error, None))?, dim)
 }

@@ -21,6 +21,12 @@ impl Report {
         self.0.soft.as_deref()
     }
 
+    /// The one of the warnings that control points do not arrive; None where they do.
+    #[getter]
+    fn not_arrived(&self) -> Option<&str> {
+        self.0.not_arrived.as_deref()
+    }
+
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.0.warnings.clone()

@@ -9,6 +9,7 @@ use pyo3::types::PyBytes;
 use crate::arrays::table;
 use crate::control_points::{raised, ControlPoints};
 use crate::deformer::Deformer;
+use crate::handles::Handles;
 use crate::progress::run_session;
 use crate::report::Report;
 use crate::shape_file::ShapeFile;
@@ -101,6 +102,14 @@ impl Session {
         Ok(Session(neuralmls_session::Session { frame, ..self.0.clone() }))
     }
 
+    /// Where to aim so that the control points arrive as closely as the settings say, m x d; `handles` are those of its control points.
+    fn aim<'py>(&self, py: Python<'py>, handles: &Handles) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (q, orientations) = (self.0.points.targets(), self.0.points.orientations());
+        let pose = Pose { q: &q, orientations: orientations.as_deref() };
+        let aim = py.detach(|| self.0.aim(&handles.0, pose)).map_err(raised)?;
+        table(py, aim.targets, self.0.points.dim())
+    }
+
     /// Fits the weights: in the session's frame, else in the box `bounds`, else in that of the control points.
     fn fit(
         &self,
@@ -113,14 +122,32 @@ impl Session {
     }
 }
 
+/// The longest side of a shape's box (2, d).
+#[pyfunction]
+pub(crate) fn longest_side(bounds: PyReadonlyArray2<'_, f64>) -> PyResult<f64> {
+    let (low, high) = corners(&bounds);
+    neuralmls_session::longest_side(&low, &high).map_err(raised)
+}
+
+/// Refuses the box (2, d) of a shape of so many points that has no size.
+#[pyfunction]
+pub(crate) fn check_size(bounds: PyReadonlyArray2<'_, f64>, count: usize) -> PyResult<()> {
+    let (low, high) = corners(&bounds);
+    neuralmls_session::Bounds::of_shape(low, high, count).map(drop).map_err(raised)
+}
+
+fn corners(bounds: &PyReadonlyArray2<'_, f64>) -> (Vec<f64>, Vec<f64>) {
+    (bounds.as_array().row(0).to_vec(), bounds.as_array().row(1).to_vec())
+}
+
 fn bounds(
-    corners: Option<PyReadonlyArray2<'_, f64>>,
+    bounds: Option<PyReadonlyArray2<'_, f64>>,
     dim: usize,
 ) -> PyResult<Option<neuralmls_session::Bounds>> {
-    let Some(corners) = corners else {
+    let Some(bounds) = bounds else {
         return Ok(None);
     };
-    let (low, high) = (corners.as_array().row(0).to_vec(), corners.as_array().row(1).to_vec());
+    let (low, high) = corners(&bounds);
     neuralmls_session::Bounds::new(low, high, dim).map(Some).map_err(raised)
 }
 
@@ -150,6 +177,12 @@ impl Map {
     #[getter]
     fn weights(&self) -> Weights {
         Weights(self.0.shared_weights())
+    }
+
+    /// What lengths are measured by: the longest side of the box in which the weights were trained.
+    #[getter]
+    fn side(&self) -> f64 {
+        self.0.side()
     }
 
     /// The same weights with other targets, transform, temperature, handles.

@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use neuralmls_core::{Frame, InverseDistance, Layer, Network, Samples, Schedule, Trained, Training};
+use neuralmls_core::{Frame, Layer, Network, Samples, Schedule, Trained, Training};
+use neuralmls_session::Settings;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::arrays::{frame, table};
 use crate::errors::{argument, from_core, from_session};
-use crate::progress::run;
+use crate::progress::{run, run_session};
 
 /// Points ordered for the evaluation of networks of one frame.
 #[pyclass(frozen)]
@@ -57,26 +58,19 @@ impl Weights {
 
 #[pymethods]
 impl Weights {
-    /// The paper's: trained on the control points alone; `steps` None: until the loss is small.
+    /// Of control points alone; the settings as JSON, `{"weights": {...}}` of a session file.
     #[staticmethod]
-    #[allow(clippy::too_many_arguments)] // One a keyword of the package's own function.
-    fn neural(
+    fn fitted(
         py: Python<'_>,
         p: PyReadonlyArray2<'_, f64>,
         bounds: Option<PyReadonlyArray2<'_, f64>>,
-        width: usize,
-        steps: Option<usize>,
-        rate: f64,
-        seed: u64,
-        fourier_sigma: Option<f64>,
+        settings: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Weights> {
         let (dim, p) = (p.shape()[1], p.as_slice()?);
         let frame = frame(bounds, p, dim)?;
-        let schedule = steps.map_or(Training::default().schedule, Schedule::Fixed);
-        let training = Training { width, schedule, rate, seed, fourier_sigma };
-        run(py, progress, |report| neuralmls_core::Weights::neural(p, dim, frame, &training, report))
-            .map(Weights::of)
+        let settings = Settings::default().with_text(settings).map_err(|error| from_session(error, None))?;
+        run_session(py, progress, |report| settings.weights.fit(p, dim, frame, report)).map(Weights::of)
     }
 
     /// Taught by samples of a shape with soft labels (k x m), of which a step looks at `batch`.
@@ -104,21 +98,6 @@ impl Weights {
             neuralmls_core::Weights::shape_aware(p, dim, frame, samples, softness, &training, report)
         })
         .map(Weights::of)
-    }
-
-    /// The classic ones.
-    #[staticmethod]
-    fn inverse_distance(
-        p: PyReadonlyArray2<'_, f64>,
-        bounds: Option<PyReadonlyArray2<'_, f64>>,
-        alpha: f64,
-        epsilon: f64,
-    ) -> PyResult<Weights> {
-        let (dim, p) = (p.shape()[1], p.as_slice()?);
-        let frame = frame(bounds, p, dim)?;
-        InverseDistance::new(p, dim, frame, alpha, epsilon)
-            .map(|function| Weights::of(neuralmls_core::Weights::InverseDistance(function)))
-            .map_err(|error| from_core(error, None))
     }
 
     /// A network of given parameters: three (weight, bias), and the frequencies of Fourier features (0 rows without).

@@ -5,9 +5,9 @@ use neuralmls_core::{Better, Kind, Look, Pose, Probe};
 
 use serde_json::{json, Value};
 
-use crate::report::ARRIVED;
+use crate::report::{short_of, ARRIVED};
 use crate::text::{general, quoted};
-use crate::words::{listed, percent, place};
+use crate::words::{at_temperature, distance, percent, place};
 use crate::{Error, HandlesSetting, Map};
 
 /// A soft handle may stop short by this part of the longest move (study: up to 0.075) ...
@@ -146,21 +146,16 @@ impl Map {
         if self.session().settings.handles == HandlesSetting::Soft {
             allowed = allowed.max((SHORT * longest).min(WIDE * self.side()));
         }
-        let mut short: Vec<usize> = (0..points.len()).filter(|&i| away[i] > allowed).collect();
-        short.sort_by(|&a, &b| away[b].total_cmp(&away[a]));
-        let Some(&worst) = short.first() else {
+        let Some((short, named)) = short_of(points, &away, allowed) else {
             return Ok(None);
         };
-        let named: Vec<String> = short
-            .iter()
-            .map(|&i| format!("{} by {}", quoted(&points[i].name), general(away[i], 3)))
-            .collect();
+        let worst = short[0];
         Ok(Some(Advice {
             kind: "misses",
             sentence: format!(
                 "control points stop short of their targets, with {} handles: {}; {}",
                 self.session().settings.handles.name(),
-                listed(&named),
+                named,
                 self.what_arrives()?
             ),
             place: points[worst].position.clone(),
@@ -207,14 +202,10 @@ impl Map {
 /// What the core has found to at least halve it.
 fn better_in_words((better, part): (Better, f64)) -> String {
     let how = match better {
-        Better::Temperature(other) => format!("at temperature {}", general(other, 6)),
+        Better::Temperature(other) => at_temperature(other),
         Better::Soft => "without exact handles".into(),
     };
     format!("{how} it is {}", percent(part))
-}
-
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
 /// Advice for a face that takes JSON: a list of kind, sentence, the control points' numbers, and how bad.

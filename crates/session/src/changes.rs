@@ -41,6 +41,22 @@ impl Settings {
         }
     }
 
+    /// [`Settings::with`], of JSON text; in a number's place it may say `NaN` or `Infinity`, which are refused by the setting's name.
+    ///
+    /// # Errors
+    /// As there, and where the text is no JSON object.
+    pub fn with_text(&self, changes: &str) -> Result<Settings, Error> {
+        let read = json::parse(changes)
+            .map_err(|error| Error::argument(format!("settings: expected a JSON object: {error}")))?;
+        match read.value {
+            Value::Object(changes) => self.with(&changes),
+            other => {
+                let found = json::found(Some(&other));
+                Err(Error::argument(format!("settings: expected a JSON object, found {found}")))
+            }
+        }
+    }
+
     /// The parameters of the weights with others in their place.
     fn weights(&self, changes: &Map<String, Value>) -> Map<String, Value> {
         let same = changes.get("kind").is_none_or(|kind| kind == self.weights.kind());
@@ -64,14 +80,12 @@ impl WeightsSettings {
 }
 
 impl Session {
-    /// [`Settings::with`], of JSON text.
+    /// The same session with [`Settings::with_text`].
     ///
     /// # Errors
-    /// As there, and where the text is no JSON object.
+    /// As there.
     pub fn with_settings(&self, changes: &str) -> Result<Session, Error> {
-        let changes: Map<String, Value> = serde_json::from_str(changes)
-            .map_err(|error| Error::argument(format!("settings: expected a JSON object: {error}")))?;
-        let settings = self.settings.with(&changes)?;
+        let settings = self.settings.with_text(changes)?;
         let has_settings = self.has_settings || settings != Settings::default();
         let mut session = Session { settings, has_settings, ..self.clone() };
         if session.settings.weights.kind() != self.settings.weights.kind() {
@@ -111,6 +125,18 @@ mod tests {
         let settings = with(r#"{"weights": {"kind": "inverse-distance", "alpha": 2}}"#).unwrap();
         assert_eq!(settings.weights, WeightsSettings::InverseDistance { alpha: 2.0, epsilon: 0.0 });
         assert_eq!(settings.weights.to_json(), r#"{"kind":"inverse-distance","alpha":2,"epsilon":0}"#);
+    }
+
+    #[test]
+    fn a_text_of_settings_is_an_object_of_finite_numbers() {
+        let says = |changes| Settings::default().with_text(changes).unwrap_err().message;
+        assert_eq!(says("[1]"), "settings: expected a JSON object, found [1]");
+        assert!(says("{").starts_with("settings: expected a JSON object: line 1, column"), "{}", says("{"));
+        assert_eq!(
+            says(r#"{"weights": {"rate": Infinity}}"#),
+            "rate: expected a number above 0, found Infinity"
+        );
+        assert_eq!(says(r#"{"temperature": NaN}"#), "temperature: expected a number above 0, found NaN");
     }
 
     #[test]

@@ -36,5 +36,6 @@ pub use map_file::{weights_from_bytes, weights_to_bytes};
 pub use neuralmls_core::Transform;
 pub use orientation::Orientation;
 pub use report::{Arrival, Held, OrientationArrival, Report};
-pub use session::{Bounds, Read, Session};
+pub use session::{longest_side, Bounds, Read, Session};
 pub use settings::{transform, HandlesSetting, Settings, WeightsSettings};
+pub use words::remedy_in_words;

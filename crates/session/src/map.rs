@@ -3,11 +3,10 @@
 use std::sync::Arc;
 
 use neuralmls_core::{
-    progress::Progress, Aim, Deformed, Deformer, Frame, Handles, InverseDistance, PointTree, Pose, Schedule,
-    Trained, Training, Transform, Weights,
+    progress::Progress, Aim, Deformed, Deformer, Frame, Handles, PointTree, Pose, Trained, Transform, Weights,
 };
 
-use crate::{Bounds, Error, HandlesSetting, Session, WeightsSettings};
+use crate::{Bounds, Error, HandlesSetting, Session};
 
 /// Control points, the weights that were fitted to them, and what is set: where each point of space goes.
 ///
@@ -44,20 +43,7 @@ impl Session {
             Some(bounds) => bounds.frame(dim)?,
             None => Frame::around(&p, dim),
         };
-        let weights = match self.settings.weights {
-            WeightsSettings::Neural { width, steps, seed, rate, fourier_sigma } => {
-                let schedule = steps.map_or(Training::default().schedule, Schedule::Fixed);
-                let training = Training { width, schedule, rate, seed, fourier_sigma };
-                Weights::neural(&p, dim, frame, &training, progress)?
-            }
-            WeightsSettings::InverseDistance { alpha, epsilon } => {
-                Weights::InverseDistance(InverseDistance::new(&p, dim, frame, alpha, epsilon)?)
-            }
-            WeightsSettings::ShapeAware { .. } => {
-                return Err(Error::argument("shape-aware weights are not fitted here yet: `neuralmls deform` and the Python package take this session"));
-            }
-        };
-        Map::of(session, weights)
+        Map::of(session, self.settings.weights.fit(&p, dim, frame, progress)?)
     }
 }
 
@@ -176,15 +162,7 @@ impl Map {
     /// Where the orientations do not fit.
     pub fn aim(&self) -> Result<Aim, Error> {
         let (q, orientations) = (self.session.points.targets(), self.session.points.orientations());
-        self.aim_at(Pose { q: &q, orientations: orientations.as_deref() })
-    }
-
-    /// [`Map::aim`] for other targets than the session's: what a drag asks for, frame by frame.
-    ///
-    /// # Errors
-    /// Where the targets do not fit.
-    pub fn aim_at(&self, pose: Pose<'_>) -> Result<Aim, Error> {
-        self.session.aim(&self.handles, pose)
+        self.session.aim(&self.handles, Pose { q: &q, orientations: orientations.as_deref() })
     }
 
     /// Binds the points `x` (n x dim); `tree`, where there is one, holds the same points.

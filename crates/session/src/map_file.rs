@@ -20,9 +20,9 @@ use neuralmls_core::{Frame, InverseDistance, Layer, Network, Trained, Weights};
 use safetensors::tensor::{serialize, Dtype, SafeTensors, View};
 use serde_json::{json, Value};
 
+use crate::files::MAP_METADATA;
 use crate::{read, Error, Map};
 
-const METADATA: &str = "neuralmls-map";
 const VERSION: u64 = 1;
 
 impl Map {
@@ -122,7 +122,7 @@ fn write(weights: &Weights, session: Option<String>) -> Vec<u8> {
     if let Some(session) = session {
         said["session"] = serde_json::from_str(&session).expect("a session is written as JSON");
     }
-    let metadata = HashMap::from([(METADATA.to_string(), said.to_string())]);
+    let metadata = HashMap::from([(MAP_METADATA.to_string(), said.to_string())]);
     let views = arrays.iter().map(|(name, array)| (name.as_str(), array));
     serialize(views, Some(metadata)).expect("arrays whose shapes fit their bytes")
 }
@@ -131,7 +131,7 @@ fn parse(bytes: &[u8]) -> Result<(Weights, Option<String>), Error> {
     let unread = |error: safetensors::SafeTensorError| broken(&error.to_string());
     let (_, head) = SafeTensors::read_metadata(bytes).map_err(unread)?;
     let arrays = Arrays(SafeTensors::deserialize(bytes).map_err(unread)?);
-    let metadata = head.metadata().as_ref().and_then(|metadata| metadata.get(METADATA));
+    let metadata = head.metadata().as_ref().and_then(|metadata| metadata.get(MAP_METADATA));
     let said: Value = metadata
         .and_then(|text| serde_json::from_str(text).ok())
         .ok_or_else(|| broken("its metadata has no neuralmls-map"))?;

@@ -1,12 +1,12 @@
 //! What happened to the control points, and what a person should know of it, in words.
 
-use neuralmls_core::{softmax, Aim, Pose, Remedy, Soft, Weights};
+use neuralmls_core::{softmax, Aim, Pose, Soft, Weights};
 
 use serde_json::json;
 
-use crate::text::{general, quoted};
-use crate::words::listed;
-use crate::{Error, HandlesSetting, Map, WeightsSettings};
+use crate::text::{general, listed, names, quoted};
+use crate::words::{distance, remedy_in_words};
+use crate::{ControlPoints, Error, HandlesSetting, Map, WeightsSettings};
 
 /// A control point with less of the weight at its own place shares it; the training aims at 0.9.
 const OWNED: f64 = 0.85;
@@ -48,6 +48,8 @@ pub struct Report {
     pub handles: String,
     /// Why all of them were left soft although more was asked for, and what would help; none where they were not.
     pub soft: Option<String>,
+    /// That control points do not arrive, one of the warnings; [`Map::advise`] says it too, by other means.
+    pub not_arrived: Option<String>,
     /// What a person should know, a sentence each.
     pub warnings: Vec<String>,
     /// Where the control points land, m x d.
@@ -115,15 +117,16 @@ impl Map {
             false => None,
         };
         let soft = self.why_soft(aim, remedy.as_deref());
-        let mut warnings: Vec<String> = self.not_parted()?.into_iter().collect();
-        if soft.is_none() {
-            warnings.extend(self.not_arrived(aim, remedy.as_deref()));
-        }
+        let not_arrived = match soft {
+            None => self.not_arrived(aim, remedy.as_deref()),
+            Some(_) => None,
+        };
+        let mut warnings: Vec<String> = self.not_parted()?.into_iter().chain(not_arrived.clone()).collect();
         let longest = control_points.iter().map(|point| point.moved).fold(0.0, f64::max);
         let coarse = held.and_then(|held| not_held(held, longest));
         let handles = self.in_words(soft.is_some(), self.any_short(aim), coarse.is_some());
         warnings.extend(coarse);
-        Ok(Report { control_points, handles, soft, warnings, places: arrived })
+        Ok(Report { control_points, handles, soft, not_arrived, warnings, places: arrived })
     }
 
     /// Whether one stays short of where it was to go.
@@ -154,10 +157,7 @@ impl Map {
             _ => self.session().adherence(),
         };
         let found = self.handles().remedy(pose, self.session().settings.temperature, &adherence)?;
-        Ok(found.map(|remedy| match remedy {
-            Remedy::Temperature(other) => format!("at temperature {}", general(other, 6)),
-            Remedy::Affine => "with the affine transform".into(),
-        }))
+        Ok(found.map(remedy_in_words))
     }
 
     /// Why all control points were left soft, and what would take them to their targets.
@@ -196,36 +196,33 @@ impl Map {
             return Ok(None);
         }
         shared.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let names: Vec<String> = shared.iter().map(|(_, i)| quoted(&points[*i].name)).collect();
         Ok(Some(format!(
             "after {} steps of training, control points still share their places with others, and stop short of their targets: {}; \
              they are probably too close together",
             thousands(steps),
-            listed(&names)
+            names(shared.iter().map(|(_, i)| &*points[*i].name))
         )))
     }
 
     /// Control points that were to be taken to their targets, as far as handles and weights say, and are not.
     fn not_arrived(&self, aim: &Aim, remedy: Option<&str>) -> Option<String> {
-        let mut short: Vec<usize> =
-            (0..aim.misses.len()).filter(|&i| aim.misses[i] > ARRIVED * self.side()).collect();
-        if short.is_empty() {
-            return None;
-        }
-        short.sort_by(|&a, &b| aim.misses[b].total_cmp(&aim.misses[a]));
-        let named: Vec<String> = short
-            .iter()
-            .map(|&i| format!("{} by {}", quoted(&self.session().points[i].name), general(aim.misses[i], 3)))
-            .collect();
+        let (_, named) = short_of(&self.session().points, &aim.misses, ARRIVED * self.side())?;
         let way_out = match remedy {
             Some(remedy) => format!("{remedy} they arrive"),
             None => "move them less, or try a lower temperature or the affine transform".into(),
         };
         Some(format!(
-            "control points do not arrive exactly: {}; their targets contradict each other under this transform: {way_out}",
-            listed(&named)
+            "control points do not arrive exactly: {named}; their targets contradict each other under this transform: {way_out}"
         ))
     }
+}
+
+/// Which control points are farther off than is allowed, the farthest first, and the same in words; `None` where none is.
+pub(crate) fn short_of(points: &ControlPoints, away: &[f64], allowed: f64) -> Option<(Vec<usize>, String)> {
+    let mut short: Vec<usize> = (0..points.len()).filter(|&i| away[i] > allowed).collect();
+    short.sort_by(|&a, &b| away[b].total_cmp(&away[a]));
+    let named = |&i: &usize| format!("{} by {}", quoted(&points[i].name), general(away[i], 3));
+    (!short.is_empty()).then(|| (short.clone(), listed(short.iter().map(named))))
 }
 
 /// That a file's numbers are too far apart for the motion.
@@ -258,10 +255,6 @@ fn angle_in<const D: usize>(map: &[f64], rotation: &[f64; 9], cosine: impl Fn(f6
     let missing = neuralmls_core::best_rotation::<D>(&c);
     let trace: f64 = (0..D).map(|k| missing[k][k]).sum();
     cosine(trace).clamp(-1.0, 1.0).acos().to_degrees()
-}
-
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
 }
 
 /// A whole number with commas.

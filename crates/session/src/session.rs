@@ -5,8 +5,11 @@ use neuralmls_core::Frame;
 
 use crate::error::Error;
 use crate::settings::Settings;
-use crate::text::shown_numbers;
+use crate::text::{general, shown_numbers};
 use serde_json::{Map, Value};
+
+/// Units; beyond it, squares of lengths overflow.
+pub(crate) const LARGEST: f64 = 1e150;
 
 /// The frame of a session: the box in which its weights are trained.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,10 +42,10 @@ impl Bounds {
         Ok(Bounds { min, max })
     }
 
-    /// The box around points of `dim` coordinates, n x dim.
+    /// The box around the points of a shape, n x dim.
     ///
     /// # Errors
-    /// An argument, where there are none, or all are in one place.
+    /// As [`Bounds::of_shape`].
     pub fn around(points: &[f64], dim: usize) -> Result<Self, Error> {
         let (mut min, mut max) = (vec![f64::INFINITY; dim], vec![f64::NEG_INFINITY; dim]);
         for point in points.chunks_exact(dim) {
@@ -50,7 +53,23 @@ impl Bounds {
                 (min[k], max[k]) = (min[k].min(*c), max[k].max(*c));
             }
         }
-        Bounds::new(min, max, dim)
+        Bounds::of_shape(min, max, points.len() / dim)
+    }
+
+    /// The box of a shape of so many points, which lengths can be measured by.
+    ///
+    /// # Errors
+    /// A file, where all points are in one place, or as [`longest_side`].
+    pub fn of_shape(min: Vec<f64>, max: Vec<f64>, count: usize) -> Result<Self, Error> {
+        if longest_side(&min, &max)? > 0.0 {
+            return Ok(Bounds { min, max });
+        }
+        let found = match count {
+            0 => "there is no vertex".into(),
+            1 => "there is only one vertex".into(),
+            _ => format!("all {count} vertices are in one place"),
+        };
+        Err(Error::file(format!("{found}, so that there is no size to measure by")))
     }
 
     /// The same as the core has it.
@@ -61,6 +80,24 @@ impl Bounds {
         let checked = Bounds::new(self.min.clone(), self.max.clone(), dim)?;
         Ok(Frame::of_box(&checked.min, &checked.max)?)
     }
+}
+
+/// The longest side of a shape's box.
+///
+/// # Errors
+/// A file, where it is so long that squares of lengths overflow.
+pub fn longest_side(min: &[f64], max: &[f64]) -> Result<f64, Error> {
+    if min.iter().zip(max).any(|(low, high)| high / LARGEST - low / LARGEST > 1.0) {
+        let largest = general(LARGEST, 6);
+        let message = format!("the shape is more than {largest} units long: no coordinates of a real thing");
+        return Err(Error::file(message));
+    }
+    Ok(longest(min, max))
+}
+
+/// The same of any box.
+pub(crate) fn longest(min: &[f64], max: &[f64]) -> f64 {
+    min.iter().zip(max).map(|(low, high)| high - low).fold(0.0, f64::max)
 }
 
 /// Control points, settings and frame: one session is one map of space, whatever file it is applied to.
@@ -99,5 +136,33 @@ impl Session {
             frame: None,
             others: Map::new(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn says(points: &[f64]) -> String {
+        Bounds::around(points, 2).unwrap_err().message
+    }
+
+    #[test]
+    fn a_shape_is_measured_by_the_longest_side_of_its_box() {
+        let bounds = Bounds::around(&[1.0, 0.0, 4.0, 1.0], 2).unwrap();
+        assert_eq!((&bounds.min[..], &bounds.max[..]), (&[1.0, 0.0][..], &[4.0, 1.0][..]));
+        assert_eq!(longest_side(&bounds.min, &bounds.max), Ok(3.0));
+        assert_eq!(longest_side(&[1.0], &[1.0]), Ok(0.0));
+    }
+
+    #[test]
+    fn a_shape_without_a_size_is_refused() {
+        assert_eq!(says(&[]), "there is no vertex, so that there is no size to measure by");
+        assert_eq!(says(&[1.0, 2.0]), "there is only one vertex, so that there is no size to measure by");
+        let three = "all 3 vertices are in one place, so that there is no size to measure by";
+        assert_eq!(says(&[1.0, 2.0, 1.0, 2.0, 1.0, 2.0]), three);
+        let long = "the shape is more than 1e+150 units long: no coordinates of a real thing";
+        assert_eq!(says(&[-1e308, 0.0, 1e308, 0.0]), long);
+        assert_eq!(longest_side(&[0.0], &[1e150]), Ok(1e150));
     }
 }

@@ -1,8 +1,18 @@
 //! How to deform: what a person sets besides the control points.
 
+use std::ops::RangeInclusive;
+
+use neuralmls_core::progress::Progress;
+use neuralmls_core::{Frame, InverseDistance, Schedule, Training, Weights};
+
 use crate::error::Error;
 use crate::text::number;
 use crate::Transform;
+
+/// Neurons in a hidden layer.
+pub(crate) const WIDTHS: RangeInclusive<u64> = 1..=1 << 14;
+/// Steps of a training.
+pub(crate) const STEPS: RangeInclusive<u64> = 1..=1_000_000;
 
 /// The kind of weights, and its parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +61,56 @@ impl WeightsSettings {
             "shape-aware" => Some(WeightsSettings::ShapeAware { seed: 0 }),
             "inverse-distance" => Some(WeightsSettings::InverseDistance { alpha: 1.0, epsilon: 0.0 }),
             _ => None,
+        }
+    }
+
+    /// Refuses what is out of its range, by name.
+    ///
+    /// # Errors
+    /// An argument.
+    pub fn check(&self) -> Result<(), Error> {
+        match *self {
+            WeightsSettings::Neural { width, steps, seed: _, rate, fourier_sigma } => {
+                check_count("width", width, WIDTHS)?;
+                if let Some(steps) = steps {
+                    check_count("steps", steps, STEPS)?;
+                }
+                check_above("rate", rate)?;
+                fourier_sigma.map_or(Ok(()), |sigma| check_above("fourier_sigma", sigma))
+            }
+            WeightsSettings::ShapeAware { .. } => Ok(()),
+            WeightsSettings::InverseDistance { alpha, epsilon } => {
+                check_above("alpha", alpha)?;
+                check_number("epsilon", epsilon, epsilon >= 0.0, "of at least 0")
+            }
+        }
+    }
+
+    /// The weights of the control points `p` (m x dim), in coordinates of a frame.
+    ///
+    /// # Errors
+    /// Where a setting is out of its range, or the control points cannot be told apart; for shape-aware weights, which need a shape:
+    /// [`crate::Map::of`] takes them.
+    pub fn fit(
+        &self,
+        p: &[f64],
+        dim: usize,
+        frame: Frame,
+        progress: &mut Progress<'_>,
+    ) -> Result<Weights, Error> {
+        self.check()?;
+        match *self {
+            WeightsSettings::Neural { width, steps, seed, rate, fourier_sigma } => {
+                let schedule = steps.map_or(Training::default().schedule, Schedule::Fixed);
+                let training = Training { width, schedule, rate, seed, fourier_sigma };
+                Ok(Weights::neural(p, dim, frame, &training, progress)?)
+            }
+            WeightsSettings::InverseDistance { alpha, epsilon } => {
+                Ok(Weights::InverseDistance(InverseDistance::new(p, dim, frame, alpha, epsilon)?))
+            }
+            WeightsSettings::ShapeAware { .. } => {
+                Err(Error::argument("shape-aware weights are not fitted here yet: `neuralmls deform` and the Python package take this session"))
+            }
         }
     }
 }
@@ -133,23 +193,7 @@ impl Settings {
     /// # Errors
     /// An argument.
     pub fn check(&self) -> Result<(), Error> {
-        match self.weights {
-            WeightsSettings::Neural { width, steps, seed: _, rate, fourier_sigma } => {
-                check_count("width", width, 1 << 14)?;
-                if let Some(steps) = steps {
-                    check_count("steps", steps, 1_000_000)?;
-                }
-                check_above("rate", rate)?;
-                if let Some(sigma) = fourier_sigma {
-                    check_above("fourier_sigma", sigma)?;
-                }
-            }
-            WeightsSettings::ShapeAware { .. } => {}
-            WeightsSettings::InverseDistance { alpha, epsilon } => {
-                check_above("alpha", alpha)?;
-                check_number("epsilon", epsilon, epsilon >= 0.0, "of at least 0")?;
-            }
-        }
+        self.weights.check()?;
         check_above("temperature", self.temperature)?;
         match self.handles {
             HandlesSetting::Part(share) => {
@@ -160,11 +204,16 @@ impl Settings {
     }
 }
 
-fn check_count(name: &str, count: usize, most: usize) -> Result<(), Error> {
-    if (1..=most).contains(&count) {
+fn check_count(name: &str, count: usize, range: RangeInclusive<u64>) -> Result<(), Error> {
+    if range.contains(&(count as u64)) {
         return Ok(());
     }
-    Err(Error::argument(format!("{name}: expected a whole number from 1 to {most}, found {count}")))
+    Err(Error::argument(not_a_count(name, &range, count)))
+}
+
+/// That something is no whole number of a range.
+pub(crate) fn not_a_count(name: &str, range: &RangeInclusive<u64>, found: impl std::fmt::Display) -> String {
+    format!("{name}: expected a whole number from {} to {}, found {found}", range.start(), range.end())
 }
 
 fn check_above(name: &str, value: f64) -> Result<(), Error> {

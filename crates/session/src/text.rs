@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+/// As many things as a sentence lists.
+const LISTED: usize = 5;
 /// The most letters of a quotation.
 const LONGEST: usize = 60;
 
@@ -36,11 +38,16 @@ pub fn quoted(name: &str) -> String {
     format!("'{}'", shown(name))
 }
 
-/// Names in a sentence, the first five of many.
-pub fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
-    let mut all: Vec<String> = names.into_iter().map(quoted).collect();
-    if all.len() > 5 {
-        return format!("{} and {} more", all[..5].join(", "), all.len() - 5);
+/// Names in a sentence, the first few of many.
+pub fn names<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    listed(names.into_iter().map(quoted))
+}
+
+/// Things in a sentence, the first few of many.
+pub fn listed(things: impl IntoIterator<Item = String>) -> String {
+    let mut all: Vec<String> = things.into_iter().collect();
+    if all.len() > LISTED {
+        return format!("{} and {} more", all[..LISTED].join(", "), all.len() - LISTED);
     }
     match all.pop() {
         Some(last) if !all.is_empty() => format!("{} and {last}", all.join(", ")),
@@ -168,8 +175,8 @@ mod tests {
 
     #[test]
     fn lists_name_the_first_five() {
-        assert_eq!(listed(["a"]), "'a'");
-        assert_eq!(listed(["a", "b", "c"]), "'a', 'b' and 'c'");
-        assert_eq!(listed(["a"; 7]), "'a', 'a', 'a', 'a', 'a' and 2 more");
+        assert_eq!(names(["a"]), "'a'");
+        assert_eq!(names(["a", "b", "c"]), "'a', 'b' and 'c'");
+        assert_eq!(names(["a"; 7]), "'a', 'a', 'a', 'a', 'a' and 2 more");
     }
 }

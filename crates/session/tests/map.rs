@@ -182,6 +182,18 @@ fn files_that_are_no_maps_are_refused_in_a_sentence() {
 }
 
 #[test]
+fn a_map_is_no_file_of_control_points_and_is_called_what_it_is() {
+    for weights in [neural(), classic()] {
+        let error = read(&fitted(&session(weights)).to_bytes(), "points.map").err().unwrap();
+        assert_eq!(error.kind, ErrorKind::File);
+        assert_eq!(
+            error.message,
+            "this is a saved map, not control points: `neuralmls deform --map` takes it"
+        );
+    }
+}
+
+#[test]
 fn shape_aware_weights_are_refused_where_no_shape_is_known() {
     let error = session(WeightsSettings::ShapeAware { seed: 0 }).fit(None, &mut |_| true).err().unwrap();
     assert!(error.message.contains("shape-aware weights are not fitted here yet"), "{error}");

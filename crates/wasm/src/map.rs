@@ -71,19 +71,6 @@ pub struct Map(neuralmls_session::Map);
 
 #[wasm_bindgen]
 impl Map {
-    /// Reads a map that was saved.
-    ///
-    /// # Errors
-    /// Where it is none.
-    pub fn load(bytes: &[u8]) -> Result<Map, JsError> {
-        neuralmls_session::Map::from_bytes(bytes).map(Map).map_err(refused)
-    }
-
-    /// The map as a file.
-    pub fn save(&self) -> Vec<u8> {
-        self.0.to_bytes()
-    }
-
     /// Mean cross-entropy after the training; undefined for weights that are not trained.
     pub fn loss(&self) -> Option<f64> {
         self.0.trained().map(|trained| trained.loss)

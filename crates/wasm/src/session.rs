@@ -48,14 +48,6 @@ impl Session {
         self.0.session.to_json()
     }
 
-    /// The text of a landmark file.
-    ///
-    /// # Errors
-    /// Where there are orientations, which it cannot hold.
-    pub fn to_csv(&self) -> Result<String, JsError> {
-        self.0.session.to_csv().map_err(refused)
-    }
-
     /// What a person should know of the control points beside a shape with this box.
     ///
     /// # Errors

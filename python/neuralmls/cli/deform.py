@@ -87,7 +87,7 @@ def deform(
         read = []
         for path, file in zip(shapes, files, strict=True):
             with failed:
-                shape = _read(path, file, moved=moved, force=force)
+                shape = _read(path, file, moved=moved, force=force, sized=ready is None and session.frame is None)
                 inputs.check_points(session.points, points or saved, shape)
                 read.append((shape, file))
     if not read:
@@ -162,9 +162,9 @@ def _session(
     return ready.session, ready, session.notes
 
 
-def _read(path: Path, file: Path, *, moved: bool, force: bool) -> Shape:
-    """A shape that can be written to the file."""
-    shape = inputs.read_shape(path)
+def _read(path: Path, file: Path, *, moved: bool, force: bool, sized: bool) -> Shape:
+    """A shape that can be written to the file; a `sized` one, where weights are to be trained in its box."""
+    shape = inputs.read_shape(path, sized=sized)
     if file == outputs.STANDARD_OUTPUT:
         for name in shape.side_files(shape.path.stem):
             raise ArgumentError(

@@ -11,10 +11,10 @@ import click
 
 from neuralmls.cli import console, options, outputs
 from neuralmls.cli.sample import sample_files, write_sample
-from neuralmls.cli.settings import Kind
 from neuralmls.errors import FileError, NeuralMLSError
+from neuralmls.settings import WeightsName
 
-RESULTS: dict[str, Kind] = {"neural": "neural", "classic": "inverse-distance"}
+RESULTS: dict[str, WeightsName] = {"neural": "neural", "classic": "inverse-distance"}
 
 
 @click.command()

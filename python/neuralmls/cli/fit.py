@@ -47,7 +47,7 @@ def fit(
     outputs.check_output(output, force=force, inputs=given)
     stages = Stages(quiet=quiet)
     session = inputs.settings_of(said, inputs.read_session(points, targets, by_order=by_order))
-    read = [inputs.read_shape(path) for path in shapes]
+    read = [inputs.read_shape(path, sized=session.frame is None) for path in shapes]
     for shape in read:
         inputs.check_points(session.points, points, shape)
     for sentence in [*session.notes, *inputs.check_together(session.points, read, session.frame)]:

@@ -17,37 +17,40 @@ if TYPE_CHECKING:
     from neuralmls.shape import Shape
 
 STANDARD_INPUT = Path("-")
-LARGEST = 1e150  # units; beyond it, squares of lengths overflow
 
 
-def read_shape(path: Path) -> Shape:
-    """Read a shape, - from standard input, that has a size.
+def read_shape(path: Path, *, sized: bool = True) -> Shape:
+    """Read a shape, - from standard input; a `sized` one, which lengths are to be measured by.
 
     Raises
     ------
     FileError
-        It cannot be read, or all of its vertices are in one place, so that there is nothing to measure by.
+        It cannot be read, is longer than numbers can hold, or is `sized` and has no size.
     """
     from neuralmls.files import read_standard_input
     from neuralmls.shape import decode, read
 
     shape = decode(read_standard_input(), Path("standard input")) if path == STANDARD_INPUT else read(path)
-    check_size(shape)
+    longest_side(shape)
+    if sized:
+        check_size(shape)
     return shape
 
 
 def check_size(shape: Shape) -> None:
-    """Refuse a shape without any extent, which there is nothing to measure by.
+    """Refuse a shape without a size, or with one that no number could hold.
 
     Raises
     ------
     FileError
-        All vertices are in one place.
+        It has none; the message names the file.
     """
-    if not longest_side(shape) > 0:
-        count = len(shape.positions)
-        found = "there is only one vertex" if count == 1 else f"all {count} vertices are in one place"
-        raise FileError(f"{shape.path}: {found}, so that there is no size to measure by")
+    from neuralmls import _core
+
+    try:
+        _core.check_size(shape.bounds, len(shape.positions))
+    except FileError as error:
+        raise FileError(f"{shape.path}: {error}") from None
 
 
 def longest_side(shape: Shape) -> float:
@@ -58,10 +61,12 @@ def longest_side(shape: Shape) -> float:
     FileError
         It is so long that squares of lengths overflow.
     """
-    low, high = shape.bounds
-    if (high / LARGEST - low / LARGEST).max() > 1:
-        raise FileError(f"{shape.path}: the shape is more than {LARGEST:g} units long: no coordinates of a real thing")
-    return float((high - low).max())
+    from neuralmls import _core
+
+    try:
+        return _core.longest_side(shape.bounds)
+    except FileError as error:
+        raise FileError(f"{shape.path}: {error}") from None
 
 
 def read_session(points: Path, targets: Path | None = None, *, by_order: bool = False) -> Session:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -45,8 +44,8 @@ def render(
     """Draw shapes side by side into a picture.
 
     All are seen by the same camera. The options of the weights are those of deform, and matter
-    for --heat only. Needs PyVista:
-    pip install 'neuralmls[figures]' (in a checkout: pip install '.[figures]')
+    for --heat only. Needs PyVista: pip install 'neuralmls[figures]', in a checkout
+    pip install --editable '.[figures]'
     """
     if heat is not None and points is None:
         raise ArgumentError("--heat names a control point: give the control points with --points")
@@ -79,18 +78,16 @@ def render(
 
 def _weights_of(name: str, shape: Shape, session: Session, stages: Stages) -> NDArray[np.float64]:
     """The weight of one control point at each vertex."""
+    from neuralmls.figures.plots import number_of
     from neuralmls.weights import softmax
 
-    names = session.points.names
-    if name not in names:
-        nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.0)[0]
-        raise ArgumentError(f"--heat: there is no control point '{name}'; the nearest name is '{nearest}'")
+    number = number_of(name, session.points.names, "--heat")
     inputs.check_size(shape)
     with stages.stage("train") as report:
         weights = session.fit(shape, progress=report).weights
     with stages.stage("bind") as report:
         logits = weights.logits(shape.positions, progress=report)
-        return softmax(logits, session.settings["temperature"])[:, names.index(name)]
+        return softmax(logits, session.settings["temperature"])[:, number]
 
 
 def _titles(shapes: Sequence[Path]) -> list[str]:

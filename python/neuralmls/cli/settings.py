@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Any, Literal, TypeAlias, TypeVar, cast, get_args
+from typing import Any, TypeVar, cast, get_args
 
 import click
 
-Kind: TypeAlias = Literal["neural", "shape-aware", "inverse-distance"]
-TransformName: TypeAlias = Literal["rigid", "similarity", "affine"]
+from neuralmls.settings import HandlesName, Transform, WeightsName
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -21,7 +20,7 @@ class HandlesType(click.ParamType[str | float]):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str | float:
         """Return the word or the number; its range is checked with the other settings."""
-        if value in ("auto", "exact", "soft"):
+        if value in get_args(HandlesName):
             return str(value)
         try:
             if "_" in str(value):  # Python would read 1_0 as a number
@@ -34,7 +33,7 @@ class HandlesType(click.ParamType[str | float]):
 WEIGHTS = (
     click.option(
         "--weights",
-        type=click.Choice(get_args(Kind)),
+        type=click.Choice(get_args(WeightsName)),
         help="Learned from the control points (neural), from the shape too, or the classic ones.  [default: neural]",
     ),
     click.option(
@@ -56,7 +55,7 @@ WEIGHTS = (
 MOTION = (
     click.option(
         "--transform",
-        type=click.Choice(get_args(TransformName)),
+        type=click.Choice(get_args(Transform)),
         help="What may happen to the shape locally.  [default: rigid]",
     ),
     click.option(
@@ -74,12 +73,13 @@ def settings_options(*options: Callable[[Any], Any]) -> Callable[[Function], Fun
     def decorate(function: Function) -> Function:
         @wraps(function)
         def chosen(**arguments: Any) -> Any:
-            names = ("weights", "temperature", "alpha", "epsilon", "width", "steps", "seed", "transform", "handles")
-            said = {name: arguments.pop(name) for name in names if name in arguments}
+            said = {name: arguments.pop(name) for name in names}
             return function(said={name: value for name, value in said.items() if value is not None}, **arguments)
 
+        names: list[str] = []
         for option in reversed(options):
             chosen = option(chosen)
+            names.append(chosen.__click_params__[-1].name)  # type: ignore[attr-defined]  # where Click keeps them
         return cast(Function, chosen)
 
     return decorate

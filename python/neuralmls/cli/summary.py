@@ -28,7 +28,7 @@ def summary(
     files: list[str],
     kept: list[str],
 ) -> dict[str, Any]:
-    """What was done, lengths in file units. The caller adds the seconds."""
+    """What was done, lengths in file units, `side` what they are measured by. The caller adds the seconds."""
     session = map.session
     weights: dict[str, Any] = dict(session.settings["weights"])
     if isinstance(map.weights, NetworkWeights):
@@ -49,6 +49,7 @@ def summary(
         "vertices": len(shape.positions),
         "triangles": 0 if shape.faces is None else len(shape.faces),
         "longest_side": longest_side(shape),
+        "side": map.side,
         "weights": weights,
         "transform": session.settings["transform"],
         "temperature": session.settings["temperature"],
@@ -61,7 +62,7 @@ def summary(
     if advice is not None:
         # Of handles that do not arrive it is told once.
         short = any(one.kind == "misses" for one in advice)
-        arrival = [w for w in report.warnings if not (short and w.startswith("control points do not arrive"))]
+        arrival = [sentence for sentence in report.warnings if not (short and sentence == report.not_arrived)]
         document["advice"] = [asdict(one) for one in advice]
         document["warnings"] = [*arrival, *(one.sentence for one in advice), *kept]
     return document
@@ -69,7 +70,7 @@ def summary(
 
 def show(told: dict[str, Any], *, everything: bool, file: TextIO) -> None:
     """Print a summary for a person."""
-    points, weights, side = told["control_points"], told["weights"], told["longest_side"]
+    points, weights, side = told["control_points"], told["weights"], told["side"]
     vertices = f"{told['vertices']:,}"
     if told["triangles"]:
         vertices += f", in {told['triangles']:,} triangles"

@@ -20,7 +20,7 @@ def png(
     *,
     columns: int,
     legend: Sequence[tuple[Colour, str]] = (),
-    weights: bool = False,
+    scale: tuple[str, str] | None = None,
 ) -> bytes:
     """The bytes of a PNG file `width` pixels wide.
 
@@ -30,13 +30,13 @@ def png(
     titles : one for each panel; what does not fit is cut off in front, where paths are least telling
     columns : panels in a row
     legend : colours of balls, and what they mean, from right to left
-    weights : whether the legend explains the heat map
+    scale : what stands at the two ends of the heat map in the legend, if it is explained there
     """
     from PIL import Image, ImageDraw
 
     panel_width = width // columns
     panel_height = round(panel_width * pictures[0].shape[0] / pictures[0].shape[1])
-    text = max(round(min(width / 64, panel_width / 14)), 9)
+    text = max(round(min(max(width / 64, 13), panel_width / 14)), 9)
     band = round(2.2 * text)
     rows = -(-len(pictures) // columns)
     page = Image.new("RGB", (width, rows * (panel_height + band) + band), "white")
@@ -60,12 +60,13 @@ def png(
         dot = dot.resize((round(2 * r), round(2 * r)), Image.Resampling.LANCZOS)
         page.paste(_rgb(colour), (round(x - r), round(y - r)), dot)
         x -= 1.2 * text
-    if weights:
-        pen.text((text, y), "weight  0", fill=_rgb(INK), font=font, anchor="lm")
-        left = round(1.4 * text + pen.textlength("weight  0", font=font))
+    if scale is not None:
+        low, high = scale
+        pen.text((text, y), low, fill=_rgb(INK), font=font, anchor="lm")
+        left = round(1.4 * text + pen.textlength(low, font=font))
         bar = np.repeat(heat(np.linspace(0, 1, 9 * text))[None], round(0.6 * text), axis=0)
         page.paste(Image.fromarray((bar * 255).round().astype(np.uint8)), (left, round(y - 0.3 * text)))
-        pen.text((left + 9.4 * text, y), "1", fill=_rgb(INK), font=font, anchor="lm")
+        pen.text((left + 9.4 * text, y), high, fill=_rgb(INK), font=font, anchor="lm")
     out = io.BytesIO()
     page.save(out, "PNG")
     return out.getvalue()

@@ -6,6 +6,7 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal, TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,8 +16,8 @@ from neuralmls.errors import ArgumentError, FileError
 from neuralmls.figures.camera import fitted
 from neuralmls.figures.page import png
 from neuralmls.figures.palette import CLAY, SOURCE, TARGET, heat
+from neuralmls.figures.picture import Picture
 from neuralmls.figures.stage import Stage, pyvista_or_refuse
-from neuralmls.files import write_atomically
 
 Array = NDArray[np.float64]
 
@@ -35,7 +36,7 @@ class Panel:
     colours : (n, 3), 0 to 1, optional
         Red, green, blue of each point; without them everything is clay.
     weights : (n,), 0 to 1, optional
-        One control point's weights, drawn as a heat map in place of colours.
+        One control point's weights, or another share, drawn as a heat map in place of colours.
     """
 
     title: str
@@ -45,33 +46,24 @@ class Panel:
     weights: ArrayLike | None = None
 
 
+class View(TypedDict, total=False):
+    """How a picture is seen, as `draw` explains it."""
+
+    width: int
+    columns: int | None
+    azimuth: float
+    elevation: float
+    up: Literal["y", "z"]
+
+
 def render(
     panels: Sequence[Panel],
     path: str | os.PathLike[str],
     *,
     control_points: ControlPoints | None = None,
-    width: int = 1600,
-    columns: int | None = None,
-    azimuth: float = 32.0,
-    elevation: float = 18.0,
-    up: str = "y",
+    **view: Unpack[View],
 ) -> None:
-    """Draw panels side by side into a PNG file, all seen by the same camera; no display is needed.
-
-    Parameters
-    ----------
-    panels : sequence of Panel, at least one
-    path : path that ends in .png
-    control_points : ControlPoints, optional
-        Drawn as balls at their sources with arrows to their targets in the first panel, as balls at their targets
-        in the others. What lies inside of the shape shines through.
-    width : int, pixels
-        The height follows from what is to be seen.
-    columns : int, optional
-        Panels in a row; all of them if not given.
-    azimuth, elevation : float, degrees
-        Where the camera stands: turned from the front to the shape's left, risen from the ground.
-    up : "y" or "z"
+    """Draw panels side by side into a PNG file: `draw`, written.
 
     Raises
     ------
@@ -84,6 +76,45 @@ def render(
     """
     if Path(path).suffix.lower() != ".png":
         raise FileError(f"{path}: expected a name that ends in .png")
+    draw(panels, control_points=control_points, **view).write(path)
+
+
+def draw(
+    panels: Sequence[Panel],
+    *,
+    control_points: ControlPoints | None = None,
+    scale: tuple[str, str] = ("weight  0", "1"),
+    width: int = 1600,
+    columns: int | None = None,
+    azimuth: float = 32.0,
+    elevation: float = 18.0,
+    up: str = "y",
+) -> Picture:
+    """Draw panels side by side, all seen by the same camera; no display is needed.
+
+    Parameters
+    ----------
+    panels : sequence of Panel, at least one
+    control_points : ControlPoints, optional
+        Drawn as balls at their sources with arrows to their targets in the first panel, as balls at their targets
+        in the others. What lies inside of the shape shines through.
+    scale : two strings
+        What the legend says at both ends of the heat map, if a panel has one.
+    width : int, pixels
+        The height follows from what is to be seen.
+    columns : int, optional
+        Panels in a row; all of them if not given.
+    azimuth, elevation : float, degrees
+        Where the camera stands: turned from the front to the shape's left, risen from the ground.
+    up : "y" or "z"
+
+    Raises
+    ------
+    NeuralMLSError
+        PyVista is not installed, or cannot draw on this machine.
+    ArgumentError
+        There is no panel, or its arrays do not fit each other.
+    """
     row = len(panels) if columns is None else columns
     if not panels or row < 1 or up not in ("y", "z") or not 64 * row <= width <= 16384:
         found = f"{len(panels)} panels, {row} in a row, {up}, {width} pixels"
@@ -119,11 +150,11 @@ def render(
                 stage.arrows((p - origin) / size, (q - origin) / size, TARGET)
         pictures.append(stage.picture())
     titles = [panel.title for panel in panels]
-    weights = any(panel.weights is not None for panel in panels)
+    ends = scale if any(panel.weights is not None for panel in panels) else None
     legend = [] if control_points is None else [(SOURCE, "control point")]
     if legend and (len(panels) > 1 or (p != q).any()):
         legend.insert(0, (TARGET, "target"))
-    write_atomically(path, png(pictures, titles, width, columns=row, legend=legend, weights=weights))
+    return Picture(png(pictures, titles, width, columns=row, legend=legend, scale=ends))
 
 
 def _in_space(values: ArrayLike, what: str) -> Array:

@@ -12,7 +12,7 @@ from neuralmls import _core
 from neuralmls import _core as core  # where a class has an attribute of that name
 from neuralmls.arrays import Progress, as_points
 from neuralmls.errors import ArgumentError, FileError
-from neuralmls.files import as_path, read_bytes, write_atomically
+from neuralmls.files import read_file, write_atomically
 from neuralmls.point_tree import PointTree
 
 
@@ -79,10 +79,9 @@ class Weights:
         FileError
             The file is missing, is not such a file, or holds weights of another kind.
         """
+        data = read_file(path)
         try:
-            core = _core.Weights.from_bytes(read_bytes(as_path("path", path)))
-        except OSError as error:
-            raise FileError(f"{path}: cannot read: {error.strerror or error}") from error
+            core = _core.Weights.from_bytes(data)
         except FileError as error:
             raise FileError(f"{path}: {error}") from None
         if core.kind != cls._kind:

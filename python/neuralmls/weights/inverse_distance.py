@@ -5,7 +5,8 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 
 from neuralmls import _core
-from neuralmls.arrays import as_box, as_number
+from neuralmls.arrays import as_box
+from neuralmls.settings import changes_of
 from neuralmls.weights.function import Weights, as_control_points
 
 
@@ -49,12 +50,9 @@ class InverseDistanceWeights(Weights):
         bounds: ArrayLike | None = None,
     ) -> None:
         p = as_control_points(control_points)
-        self._core = _core.Weights.inverse_distance(
-            p,
-            None if bounds is None else as_box(bounds, p.shape[1]),
-            as_number("alpha", alpha, 0),
-            as_number("epsilon", epsilon, 0, open_low=False),
-        )
+        box = None if bounds is None else as_box(bounds, p.shape[1])
+        settings = changes_of(self._kind, {"alpha": alpha, "epsilon": epsilon})
+        self._core = _core.Weights.fitted(p, box, settings, None)
 
     @property
     def alpha(self) -> float:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 
 from neuralmls import _core
-from neuralmls.arrays import Progress, as_box, as_count, as_number
+from neuralmls.arrays import Progress, as_box
+from neuralmls.settings import changes_of
 from neuralmls.weights.function import NetworkWeights, as_control_points
 
 
@@ -64,11 +65,6 @@ class NeuralWeights(NetworkWeights):
         np.int64(0)
         """
         p = as_control_points(control_points)
-        as_count("seed", seed, 0, 2**64 - 1)
-        as_count("width", width, 1, 1 << 14)
-        if steps is not None:
-            as_count("steps", steps, 1, 1_000_000)
-        rate = as_number("rate", rate, 0)
-        sigma = None if fourier_sigma is None else as_number("fourier_sigma", fourier_sigma, 0)
         box = None if bounds is None else as_box(bounds, p.shape[1])
-        return cls._of(_core.Weights.neural(p, box, width, steps, rate, seed, sigma, progress))
+        parameters = {"seed": seed, "width": width, "steps": steps, "rate": rate, "fourier_sigma": fourier_sigma}
+        return cls._of(_core.Weights.fitted(p, box, changes_of(cls._kind, parameters), progress))

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 FLAT = 1e-10
 
 
-def library(module: str) -> Any:
+def library(module: str, needed_by: str = "this baseline") -> Any:
     """Import a library that the package brings.
 
     Raises
@@ -29,9 +29,7 @@ def library(module: str) -> Any:
     try:
         return import_module(module)
     except ImportError as error:
-        raise NeuralMLSError(
-            f"this baseline needs {module.split('.')[0]}, which is not installed: {RESEARCH}"
-        ) from error
+        raise NeuralMLSError(f"{needed_by} needs {module.split('.')[0]}, which is not installed: {RESEARCH}") from error
 
 
 def arguments(method: str, shape: Shape, p: ArrayLike, q: ArrayLike) -> tuple[Array, Array, Array]:

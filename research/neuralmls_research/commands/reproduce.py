@@ -39,9 +39,10 @@ def reproduce(*, items: tuple[str, ...], output: Path, quiet: bool, force: bool)
     from neuralmls_research.experiments.reproduce.run import reproduce as run
     from neuralmls_research.scatter import matplotlib_or_refuse
 
+    for module in ("PIL", "igl", "safetensors", "scipy"):  # now, and not when the item is reached that needs it
+        library(module, "reproduce")
     pyvista_or_refuse()
     matplotlib_or_refuse()
-    library("igl")
     stages = Stages(quiet=quiet)
     page, reports = run(selected, lab, stages.stage)
     if quiet:

@@ -195,7 +195,12 @@ def kpd(network: KeypointDeformer | str | os.PathLike[str], title: str = baselin
     from neuralmls_research.baselines.kpd import KeypointDeformer
 
     known = network if isinstance(network, KeypointDeformer) else KeypointDeformer.read(network)
-    return of_shapes(title, partial(baselines.get("kpd"), network=known))
+
+    def bind(shape: Geometry, p: ArrayLike) -> Bound:
+        bound = known.bind(shape)
+        return Bound(lambda q: baselines.get("kpd")(shape, p, q, network=bound))
+
+    return Method(title, bind)
 
 
 def _box(shape: Geometry) -> Array:

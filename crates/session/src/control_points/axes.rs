@@ -1,5 +1,6 @@
 //! Sources that fit the shape's box only with other axes, or in another unit: which flip or scale that is.
 
+use crate::session::longest;
 use crate::text::number;
 
 /// How far outside of the box the sources must lie as they are, in longest sides of it.
@@ -41,7 +42,7 @@ const UNITS: [(f64, &str); 4] = [
 /// A sentence, if there is such a flip or scale. `low`, `high`: the shape's box, of the sources' dimension.
 pub fn other_axes_or_unit(sources: &[f64], low: &[f64], high: &[f64]) -> Option<String> {
     let dim = low.len();
-    let side = low.iter().zip(high).map(|(low, high)| high - low).fold(0.0, f64::max);
+    let side = longest(low, high);
     if sources.len() / dim < FEWEST || side <= 0.0 {
         return None;
     }

@@ -3,13 +3,12 @@
 use super::fit::{self, Rest};
 use super::{axes, ControlPoints};
 use crate::error::Error;
-use crate::text::{general, listed, number};
+use crate::session::{longest, LARGEST};
+use crate::text::{general, names, number};
 
 /// How far outside of the shape's box (in longest sides of it) a control point is no longer taken for intended.
 const FAR_SOURCE: f64 = 1.0;
 const FAR_TARGET: f64 = 10.0;
-/// Units; beyond it, squares of lengths overflow.
-const LARGEST: f64 = 1e150;
 /// What a mirroring may leave of the targets, and what the best rotation must leave, to be taken for one.
 const SMALL_REST: f64 = 0.1;
 const LARGE_REST: f64 = 0.2;
@@ -18,7 +17,8 @@ const THIN: f64 = 1e-6;
 
 impl ControlPoints {
     /// Warns of control points that a person may not have meant, a sentence for each kind: far outside of the shape's box
-    /// (`bounds`: its least and its greatest corner), another's axes or units, mirrored targets, nearly on a line.
+    /// (`bounds`: its least and its greatest corner), another's axes or units, mirrored targets, nearly on a line. Beside a box without a
+    /// size nothing is far.
     ///
     /// # Errors
     /// Control points, where they have another dimension than the shape, or a coordinate so large that no length could be
@@ -30,29 +30,30 @@ impl ControlPoints {
             let message = format!("the control points have {d} coordinates each, but the shape has {found}");
             return Err(Error::control_point(message));
         }
-        let side = low.iter().zip(high).map(|(low, high)| high - low).fold(0.0, f64::max);
+        let side = longest(low, high);
         let mut warnings = Vec::new();
         for (points, what, limit) in
             [(self.sources(), "position", FAR_SOURCE), (self.targets(), "target", FAR_TARGET)]
         {
             let each = || self.iter().zip(points.chunks_exact(self.dim()));
             let huge = each().filter(|(_, place)| place.iter().any(|c| c.abs() > LARGEST));
-            let huge = listed(huge.map(|(point, _)| &*point.name));
+            let huge = names(huge.map(|(point, _)| &*point.name));
             if !huge.is_empty() {
+                let largest = general(LARGEST, 6);
                 let message = format!(
-                    "the {what} of {huge} has a coordinate beyond 1e+150: no coordinates of a real thing"
+                    "the {what} of {huge} has a coordinate beyond {largest}: no coordinates of a real thing"
                 );
                 return Err(Error::control_point(message));
             }
             let far: Vec<(&str, f64)> = each()
                 .map(|(point, place)| (&*point.name, distance(place, low, high)))
-                .filter(|(_, distance)| *distance > limit * side)
+                .filter(|(_, distance)| side > 0.0 && *distance > limit * side)
                 .collect();
             if !far.is_empty() {
                 let most = general(far.iter().map(|(_, distance)| *distance).fold(0.0, f64::max), 6);
-                let (names, side) = (listed(far.iter().map(|(name, _)| *name)), general(side, 6));
+                let (far, side) = (names(far.iter().map(|(name, _)| *name)), general(side, 6));
                 warnings.push(format!(
-                    "the {what} of {names} lies up to {most} units outside of the shape, whose longest side is {side}: \
+                    "the {what} of {far} lies up to {most} units outside of the shape, whose longest side is {side}: \
                      wrong coordinates are the usual mistake"
                 ));
             }

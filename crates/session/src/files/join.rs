@@ -6,7 +6,7 @@ use super::slicer;
 use crate::control_points::{ControlPoint, ControlPoints};
 use crate::error::Error;
 use crate::session::{Read, Session};
-use crate::text::listed;
+use crate::text;
 
 /// Joins two files: the control points of the one, with the positions of the other as their targets, by name or by order.
 ///
@@ -58,7 +58,7 @@ pub fn join(source: Read, mut targets: Read, by_order: bool) -> Result<Read, Err
     ] {
         if !names.is_empty() {
             let (s, are) = if names.len() == 1 { ("", "is") } else { ("s", "are") };
-            let names = listed(names.iter().map(String::as_str));
+            let names = text::names(names.iter().map(String::as_str));
             notes.push(format!("landmark{s} {names} of the {whose} {are} left out: not among the {of}"));
         }
     }

@@ -3,7 +3,7 @@
 use crate::control_points::{ControlPoint, ControlPoints};
 use crate::error::Error;
 use crate::session::{Read, Session};
-use crate::text::listed;
+use crate::text;
 
 /// What landmark tools write for a coordinate that is not known.
 const MISSING: f64 = 9999.0;
@@ -65,7 +65,7 @@ impl Landmarks {
         let left_out: Vec<String> = left_out
             .iter()
             .map(|(why, names)| {
-                let listed = listed(names.iter().map(String::as_str));
+                let listed = text::names(names.iter().map(String::as_str));
                 if names.len() == 1 {
                     format!("landmark {listed} is left out: {why}")
                 } else {

@@ -30,12 +30,26 @@ pub(crate) use csv_text::csv_text;
 pub use join::join;
 pub(crate) use json::json_text;
 
+/// The one entry of metadata in a saved map.
+pub(crate) const MAP_METADATA: &str = "neuralmls-map";
+
+/// Whether bytes begin as those of a saved map do: a length, and a header with its metadata first.
+fn is_map(bytes: &[u8]) -> bool {
+    let start = format!("{{\"__metadata__\":{{\"{MAP_METADATA}\":");
+    bytes.get(size_of::<u64>()..).is_some_and(|header| header.starts_with(start.as_bytes()))
+}
+
 /// Reads a control-point file or a landmark file of another tool: by its content, and by the ending of its name where the
 /// content leaves it open.
 ///
 /// # Errors
 /// A file, where it cannot be read; control points, where they cannot be used.
 pub fn read(bytes: &[u8], name: &str) -> Result<Read, Error> {
+    if is_map(bytes) {
+        return Err(Error::file(
+            "this is a saved map, not control points: `neuralmls deform --map` takes it",
+        ));
+    }
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let at = error.valid_up_to();
         Error::file(format!("byte {at}: expected UTF-8 text, found 0x{:02x}", bytes[at]))

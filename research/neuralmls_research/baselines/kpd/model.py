@@ -14,7 +14,6 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from neuralmls import Shape
 from neuralmls.errors import ArgumentError, FileError, NeuralMLSError, NotApplicable
 from neuralmls.plugin import as_path, as_points
 from neuralmls_research.baselines.checks import library
@@ -148,7 +147,7 @@ class KeypointDeformer:
         x, centre, scale = normalise(shape.positions)
         return network.keypoints(self._layers, x) * scale + centre
 
-    def bind(self, shape: Shape) -> BoundKeypoints:
+    def bind(self, shape: HasPositions) -> BoundKeypoints:
         """Find a shape's keypoints, its cage, and its vertices' coordinates in it.
 
         Raises

@@ -1,10 +1,12 @@
 //! The settings of a session file. Errors do not name the place: the caller does.
 
+use std::ops::RangeInclusive;
+
 use serde_json::{Map, Value};
 
 use super::style::{found, found_setting};
 use crate::error::Error;
-use crate::settings::{HandlesSetting, Settings, WeightsSettings, TRANSFORMS};
+use crate::settings::{not_a_count, HandlesSetting, Settings, WeightsSettings, STEPS, TRANSFORMS, WIDTHS};
 use crate::Transform;
 
 pub type Keys = Map<String, Value>;
@@ -59,13 +61,13 @@ pub fn weights(kind: &str, keys: &mut Keys) -> Result<WeightsSettings, Error> {
     match &mut weights {
         WeightsSettings::Neural { width, steps, seed, rate, fourier_sigma } => {
             if let Some(found) = take("width") {
-                *width = count("width", &found, 1, 1 << 14)? as usize;
+                *width = count("width", &found, WIDTHS)? as usize;
             }
             if let Some(found) = take("steps") {
-                *steps = Some(count("steps", &found, 1, 1_000_000)? as usize);
+                *steps = Some(count("steps", &found, STEPS)? as usize);
             }
             if let Some(found) = take("seed") {
-                *seed = count("seed", &found, 0, u64::MAX)?;
+                *seed = count("seed", &found, 0..=u64::MAX)?;
             }
             if let Some(found) = take("rate") {
                 *rate = number("rate", &found, "above 0")?;
@@ -76,7 +78,7 @@ pub fn weights(kind: &str, keys: &mut Keys) -> Result<WeightsSettings, Error> {
         }
         WeightsSettings::ShapeAware { seed } => {
             if let Some(found) = take("seed") {
-                *seed = count("seed", &found, 0, u64::MAX)?;
+                *seed = count("seed", &found, 0..=u64::MAX)?;
             }
         }
         WeightsSettings::InverseDistance { alpha, epsilon } => {
@@ -146,9 +148,7 @@ fn number(name: &str, found: &Value, expected: &str) -> Result<f64, Error> {
     })
 }
 
-fn count(name: &str, found: &Value, low: u64, high: u64) -> Result<u64, Error> {
-    found.as_u64().filter(|count| (low..=high).contains(count)).ok_or_else(|| {
-        let found = found_setting(found);
-        Error::argument(format!("{name}: expected a whole number from {low} to {high}, found {found}"))
-    })
+fn count(name: &str, found: &Value, range: RangeInclusive<u64>) -> Result<u64, Error> {
+    let count = found.as_u64().filter(|count| range.contains(count));
+    count.ok_or_else(|| Error::argument(not_a_count(name, &range, found_setting(found))))
 }

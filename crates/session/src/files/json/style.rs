@@ -45,9 +45,13 @@ pub fn found(value: Option<&Value>) -> String {
     value.map_or("nothing".into(), |value| shown(&line(value).replace(STAND_IN, "")))
 }
 
-/// The same with single quotation marks, as settings are quoted.
+/// The same with single quotation marks, as settings are quoted, and none around what is no finite number.
 pub fn found_setting(value: &Value) -> String {
-    shown(&written(value, b"'").replace(STAND_IN, ""))
+    let not_finite = value.as_str().and_then(|text| text.strip_prefix(STAND_IN));
+    match not_finite {
+        Some(word @ ("NaN" | "Infinity" | "-Infinity")) => word.into(),
+        _ => shown(&written(value, b"'").replace(STAND_IN, "")),
+    }
 }
 
 /// What a value is.
