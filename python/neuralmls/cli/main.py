@@ -17,7 +17,7 @@ from neuralmls.extras import RESEARCH
 BAD_DATA, WRONG_USE, INTERRUPTED = 1, 2, 130
 
 COMMANDS = ("deform", "fit", "edit", "inspect", "points", "render", "sample", "demo")
-RESEARCH_COMMANDS = ("compare", "benchmark", "reproduce", "study", "convert-kpd")
+RESEARCH_COMMANDS = ("compare", "benchmark", "reproduce", "study", "keypoints", "convert-kpd")
 PLUGINS = "neuralmls.commands"  # the entry points by which other packages name commands: `plugin.py`
 
 

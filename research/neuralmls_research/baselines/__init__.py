@@ -1,4 +1,4 @@
-"""The methods that the paper compares with, and two that users know: each is one call, `baseline(shape, p, q)`.
+"""The methods that the paper compares with, and others that users know: each is one call, `baseline(shape, p, q)`.
 
 All take the same arguments and return the same thing, so that a comparison needs to know only their names. Their own
 docstrings say what is special about each. Unmoved control points return the positions bit for bit.
@@ -28,7 +28,7 @@ Examples
 --------
 
 >>> NAMES
-('classic', 'arap', 'kpd', 'rbf', 'biharmonic')
+('classic', 'arap', 'kpd', 'rbf', 'biharmonic', 'biharmonic-displacements')
 >>> get("classic").__name__
 'classic'
 """
@@ -53,9 +53,10 @@ TITLES = {
     "kpd": "KeypointDeformer",
     "rbf": "RBF",
     "biharmonic": "Biharmonic weights",
+    "biharmonic-displacements": "Biharmonic displacements",
 }
 NAMES = tuple(TITLES)
-_HOMES = {name: f"neuralmls_research.baselines.{name}" for name in NAMES} | {
+_HOMES = {name: f"neuralmls_research.baselines.{name.replace('-', '_')}" for name in NAMES} | {
     "kpd": "neuralmls_research.baselines.kpd.baseline"
 }
 
@@ -71,5 +72,5 @@ def get(name: str) -> Baseline:
     if name not in NAMES:
         nearest = difflib.get_close_matches(str(name), NAMES, n=1, cutoff=0.0)[0]
         raise ArgumentError(f"there is no baseline '{name}'; the nearest name is '{nearest}'")
-    function: Baseline = getattr(import_module(_HOMES[name]), name)
+    function: Baseline = getattr(import_module(_HOMES[name]), name.replace("-", "_"))
     return function

@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from neuralmls.cli.plugin import Stages, console, options
-from neuralmls.errors import ArgumentError, FileError, NotApplicable
+from neuralmls.errors import ArgumentError, FileError, NeuralMLSError
+from neuralmls_research.commands import pose_tables, settings
 
 if TYPE_CHECKING:
+    from neuralmls_research.experiments.against_rivals import Measured
+    from neuralmls_research.experiments.methods import Method
     from neuralmls_research.experiments.poses import Poses
 
 
@@ -25,12 +28,16 @@ def benchmark() -> None:
 @click.option(
     "--methods",
     metavar="NAME,...",
-    help="rbf,classic,neural,shape-aware-exact,arap if not given; also neural-exact,shape-aware,biharmonic.",
+    help="neural,neural-exact,shape-aware,shape-aware-exact,classic,rbf,arap,arap-from-fit,"
+    "biharmonic-displacements if not given; also biharmonic, which is slow.",
 )
+@settings.options(alpha=2)
 @click.option("--counts", metavar="M,...", default="12,40", help="Numbers of control points.")
 @options.json
 @options.quiet
-def poses(*, folder: Path, methods: str | None, counts: str, json: bool, quiet: bool) -> None:
+def poses(
+    *, folder: Path, methods: str | None, said: dict[str, Any], seeds: int, counts: str, json: bool, quiet: bool
+) -> None:
     """Compare deformed shapes with their true poses.
 
     FOLDER holds .npz files with the arrays rest (n, 3), poses (k, n, 3) and faces (f, 3).
@@ -38,81 +45,71 @@ def poses(*, folder: Path, methods: str | None, counts: str, json: bool, quiet: 
     Control points, spread over the shape at rest, move to where they are in a pose; how far are
     the other vertices from where they are? The mean over vertices and up to six poses of a
     file, in % of the diagonal of the box at rest.
+
+    Then each method with learned weights against the best other one of each file: the geometric
+    mean of the ratios of their errors, its interval by a paired bootstrap over files and poses,
+    and on how many files it is better.
     """
+    from neuralmls_research.experiments.compare import load_libraries
+    from neuralmls_research.experiments.methods import with_settings
     from neuralmls_research.experiments.poses import POSE_METHODS, QUICK
 
-    chosen = list(QUICK) if methods is None else options.names(methods, POSE_METHODS)
+    names = list(QUICK) if methods is None else options.names(methods, POSE_METHODS)
+    chosen = settings.by_seed(with_settings({name: POSE_METHODS[name] for name in names}, said), seeds)
     numbers = _numbers(counts)
     if not folder.is_dir():
         raise FileError(f"{folder}: expected a folder of .npz files")
     files = sorted(folder.glob("*.npz"))
     if not files:
         raise FileError(f"{folder}: there is no .npz file in this folder")
-    told: list[dict[str, Any]] = []
+    load_libraries()
+    measured: list[Measured] = []
     refused = 0
     stages = Stages(quiet=quiet)
     for file in files:
         try:
-            told += _measured(file, chosen, numbers, stages)
+            measured += _measured(file, chosen, numbers, stages)
         except FileError as error:
             console.error(str(error))
             refused += 1
     if json:
-        console.document({"unit": "% of the diagonal of the box at rest", "rows": told})
-    elif told:
-        _show(told, chosen)
+        console.document(pose_tables.document(measured, chosen))
+    elif measured:
+        pose_tables.show(measured, chosen, sys.stdout)
     if refused:
         raise click.exceptions.Exit(1)
 
 
-def _measured(file: Path, names: list[str], counts: list[int], stages: Stages) -> list[dict[str, Any]]:
-    """A row for each number of control points."""
+def _measured(file: Path, methods: dict[str, list[Method]], counts: list[int], stages: Stages) -> list[Measured]:
+    """What is measured of a file for each number of control points."""
+    from neuralmls_research.experiments.against_rivals import Measured
     from neuralmls_research.experiments.poses import read_poses
 
     with stages.stage("read"):
         content = read_poses(file)
-    rows = []
+    found = []
     for count in counts:
-        errors: dict[str, float | None] = {}
-        reasons: dict[str, str] = {}
-        for name in names:
+        row = Measured(str(file), count, {}, {})
+        for name, several in methods.items():
             with stages.stage(f"{content.name}, {count}, {name}"):
-                errors[name], reason = _error(content, name, count, file)
-            if reason is not None:
-                reasons[name] = reason
-        rows.append({"file": str(file), "control_points": count, "errors": errors, "not_applicable": reasons})
-    return rows
+                try:
+                    row.errors[name] = [_errors(content, method, count, file) for method in several]
+                except FileError:
+                    raise
+                except NeuralMLSError as error:  # named, never passed over: it does not apply, or is not installed
+                    row.not_applicable[name] = str(error)
+        found.append(row)
+    return found
 
 
-def _error(content: Poses, name: str, count: int, file: Path) -> tuple[float | None, str | None]:
-    """The mean error, or why there is none."""
-    from neuralmls_research.experiments.poses import POSE_METHODS, pose_errors
+def _errors(content: Poses, method: Method, count: int, file: Path) -> list[float]:
+    """The mean error of each pose."""
+    from neuralmls_research.experiments.poses import pose_errors
 
     try:
-        errors = pose_errors(content, POSE_METHODS[name], count)
-    except NotApplicable as error:
-        return None, str(error)
+        return pose_errors(content, method, count)
     except ArgumentError as error:
         raise FileError(f"{file}: {error}") from None
-    return sum(errors) / len(errors), None
-
-
-def _show(rows: list[dict[str, Any]], names: list[str]) -> None:
-    from neuralmls_research.experiments.poses import POSE_METHODS
-
-    print("mean error in % of the diagonal")
-    cells = []
-    for row in rows:
-        values = (row["errors"][name] for name in names)
-        cells.append(
-            (Path(row["file"]).stem, str(row["control_points"]), *("-" if v is None else f"{v:.2f}" for v in values))
-        )
-    head = ["file", "control points", *(POSE_METHODS[name].title for name in names)]
-    console.table(head, cells, range(1, len(head)))
-    for row in rows:
-        for name, reason in row["not_applicable"].items():
-            where = f"{Path(row['file']).stem}, {row['control_points']} control points"
-            console.line(f"  {POSE_METHODS[name].title} does not apply to {where}: {reason}", sys.stdout)
 
 
 def _numbers(text: str) -> list[int]:

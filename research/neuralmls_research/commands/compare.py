@@ -10,6 +10,7 @@ import click
 
 from neuralmls.cli.plugin import Stages, check_inputs, console, options, outputs
 from neuralmls.errors import ArgumentError, ControlPointError
+from neuralmls_research.commands import settings
 
 if TYPE_CHECKING:
     from neuralmls import ControlPoints, Shape
@@ -25,8 +26,10 @@ if TYPE_CHECKING:
 @click.option(
     "--methods",
     metavar="NAME,...",
-    help="neural,neural-exact,shape-aware,shape-aware-exact,classic,rbf,arap,biharmonic,kpd; all if not given.",
+    help="neural,neural-exact,shape-aware,shape-aware-exact,classic,rbf,arap,arap-from-fit,biharmonic,"
+    "biharmonic-displacements,keypoint-deformer; all if not given.",
 )
+@settings.options(alpha=0.5)
 @click.option("--output", "-o", metavar="FOLDER", type=options.PATH, help="Write each deformed shape into it.")
 @click.option("--picture", type=options.PATH, help="Draw the source and all results, .png.")
 @click.option("--scatter", type=options.PATH, help="Draw distortion against control-point error, .png.")
@@ -40,6 +43,8 @@ def compare(
     points: Path,
     kpd: Path | None,
     methods: str | None,
+    said: dict[str, Any],
+    seeds: int,
     output: Path | None,
     picture: Path | None,
     scatter: Path | None,
@@ -51,15 +56,19 @@ def compare(
     """Deform a shape by every method that can, and measure each.
 
     Neural weights as in the paper; what we add to it: exact handles, weights that know the
-    shape, and both; classic weights, thin-plate RBF, ARAP, biharmonic weights, and with --kpd
-    KeypointDeformer. A method that cannot do the shape says why.
+    shape, and both; classic weights, thin-plate RBF, ARAP from the shape at rest and from the
+    rigid fit, biharmonic weights and displacements, and with --kpd KeypointDeformer. A method that
+    cannot do the shape says why. Settings in the file of control points hold where no option says
+    otherwise.
 
-    Example: neuralmls compare chair.obj --points chair.json --picture all.png
+    Example: neuralmls compare chair.obj --points chair.json --methods neural,classic --alpha 1
     """
-    from neuralmls_research.experiments.methods import METHODS
+    from neuralmls_research.experiments.methods import KPD, METHODS, with_settings
 
-    known = [*METHODS, *(["kpd"] if kpd is not None else [])]
+    known = [*METHODS, *([KPD] if kpd is not None else [])]
     names = known if methods is None else options.names(methods, known)
+    chosen = {name: METHODS[name] for name in names if name in METHODS}
+    with_settings(chosen, said)  # refused before anything is read
     inputs = [shape, points, *([kpd] if kpd is not None else [])]
     for file, ending in ((picture, "png"), (scatter, "png"), (csv, "csv")):
         if file is not None:
@@ -71,15 +80,18 @@ def compare(
         for file in deformed.values():
             outputs.check_output(file, force=force, inputs=inputs)
 
-    from neuralmls import ControlPoints, read
+    from neuralmls import Session, read
     from neuralmls_research.commands import comparison
     from neuralmls_research.experiments.compare import attempt, load_libraries
     from neuralmls_research.experiments.methods import kpd as kpd_method
 
-    available = METHODS | ({"kpd": kpd_method(kpd)} if kpd is not None else {})
+    source, session = read(shape), Session.read(points)
+    control_points = session.points
+    available = with_settings(settings.of_session(session, chosen), said)
+    if KPD in names and kpd is not None:
+        available[KPD] = kpd_method(kpd)
     stages = Stages(quiet=quiet)
-    source, control_points = read(shape), ControlPoints.read(points)
-    warnings = check_inputs(source, control_points, points)
+    warnings = [*session.notes, *check_inputs(source, control_points, points)]
     if not (control_points.sources != control_points.targets).any():
         raise ControlPointError(f"{points}: no control point is moved, so that there is nothing to compare")
     if scatter is not None and (source.faces is None or source.positions.shape[1] != 3):
@@ -91,15 +103,19 @@ def compare(
     for sentence in warnings:
         console.warning(sentence)
     load_libraries()
-    results: dict[str, Result] = {}
-    for name in names:
-        with stages.stage(name):
-            results[name] = attempt(available[name], source, control_points.sources, control_points.targets)
+    runs = settings.by_seed({name: available[name] for name in names}, seeds)
+    results: dict[str, list[Result]] = {}
+    for name, several in runs.items():
+        with stages.stage(name) as report:
+            results[name] = []
+            for number, method in enumerate(several, 1):
+                results[name].append(attempt(method, source, control_points.sources, control_points.targets))
+                report(number / len(several))
     low, high = source.bounds
     told: dict[str, Any] = {"input": str(shape), "points": str(points), "unit": float((high - low).max()) / 2}
-    told |= comparison.document(source, results) | {"files": [], "warnings": warnings}
+    told |= comparison.document(source, runs, results) | {"files": [], "warnings": warnings}
     for name, file in deformed.items():
-        positions = results[name].positions
+        positions = results[name][0].positions
         if positions is not None:
             files, kept = outputs.write_shape(source, file, positions, force=force)
             told["files"] += files
@@ -109,7 +125,7 @@ def compare(
     if csv is not None:
         comparison.write_csv(csv, told["methods"])
     if picture is not None:
-        _draw(picture, source, control_points, results)
+        _draw(picture, source, control_points, [several[0] for several in results.values()])
     if scatter is not None:
         comparison.draw_scatter(scatter, results)
     told["files"] += [str(file) for file in (csv, picture, scatter) if file is not None]
@@ -131,15 +147,11 @@ def _check_libraries(picture: Path | None, scatter: Path | None) -> None:
         matplotlib_or_refuse()
 
 
-def _draw(path: Path, shape: Shape, points: ControlPoints, results: dict[str, Result]) -> None:
+def _draw(path: Path, shape: Shape, points: ControlPoints, results: list[Result]) -> None:
     """Draw the source and all results, in rows."""
     from neuralmls.figures.render import Panel, render
 
     panels = [Panel("source", shape.positions, shape.faces)]
-    panels += [
-        Panel(result.title, result.positions, shape.faces)
-        for result in results.values()
-        if result.positions is not None
-    ]
+    panels += [Panel(result.title, result.positions, shape.faces) for result in results if result.positions is not None]
     rows = -(-len(panels) // 4)
     render(panels, path, control_points=points, columns=-(-len(panels) // rows))

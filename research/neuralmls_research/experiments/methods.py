@@ -1,7 +1,9 @@
 """The methods that experiments compare, each under one name and with one way to call it.
 
->>> list(METHODS)
-['neural', 'neural-exact', 'shape-aware', 'shape-aware-exact', 'classic', 'rbf', 'arap', 'biharmonic']
+>>> list(METHODS)[:5]
+['neural', 'neural-exact', 'shape-aware', 'shape-aware-exact', 'classic']
+>>> METHODS["classic"].title, neural(steps=48, temperature=0.5).title
+('Classic MLS (alpha 0.5: 1/d)', 'NeuralMLS (48 steps, temperature 0.5)')
 >>> square = Surface(np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]]))
 >>> METHODS["classic"](square, square.positions, square.positions + 1).tolist()[0]
 [1.0, 1.0, 1.0]
@@ -12,22 +14,31 @@ A new method is one more entry of `METHODS`.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import partial
-from typing import Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from neuralmls import Deformer, NeuralWeights, ShapeAwareWeights, Weights
+from neuralmls import Deformer, InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
+from neuralmls.errors import ArgumentError
 from neuralmls.plugin import Transform
 from neuralmls_research import baselines
+from neuralmls_research.experiments.naming import OURS, own, settings_of, title_of
+
+if TYPE_CHECKING:
+    from neuralmls_research.baselines.kpd import KeypointDeformer
 
 Array: TypeAlias = NDArray[np.float64]
 SpaceMap: TypeAlias = Callable[[Array], Array]
 
-OURS = "(ours)"  # in the titles of what is not in the paper: docs/notes/beyond-the-paper.md
+__all__ = ["KPD", "METHODS", "OURS", "Array", "Bound", "Geometry", "Method", "Surface", "classic", "kpd", "neural",
+           "of_shapes", "shape_aware", "with_settings"]  # fmt: skip
+
+KPD = "keypoint-deformer"  # the name that people call it by: it needs weights, and is none of `METHODS`
+PAPER_ALPHA = 0.5  # of the classic weights that the paper compares with: 1/d
 
 
 class Geometry(Protocol):
@@ -73,13 +84,22 @@ class Method:
     Attributes
     ----------
     title : str
-        What tables and figures call it.
+        What tables and figures call it, with the parameters that are not left at their defaults.
     bind : callable, (shape, p (m, d)) -> Bound
         Does once, as training a network, what does not depend on the targets.
+    settings : dict
+        All of its settings, as a session has them; empty for a method that is no moving least squares.
     """
 
     title: str
     bind: Callable[[Geometry, ArrayLike], Bound]
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def seed(self) -> int | None:
+        """The seed of its training; None where there is none, so that it always gives the same."""
+        seed: int | None = self.settings.get("weights", {}).get("seed")
+        return seed
 
     def __call__(self, shape: Geometry, p: ArrayLike, q: ArrayLike) -> Array:
         """Return the vertices deformed, (n, d) float64, in the coordinates of the shape."""
@@ -92,38 +112,78 @@ def of_shapes(title: str, deformed: Callable[[Geometry, ArrayLike, ArrayLike], A
 
 
 def neural(
-    title: str = "NeuralMLS",
+    title: str | None = None,
     *,
     transform: Transform = "rigid",
     temperature: float = 1.0,
     adherence: float = 0.0,
     **training: Any,
 ) -> Method:
-    """The paper's weights, with the options of `Deformer` and of `NeuralWeights.fit` (steps, width, seed, ...)."""
+    """The paper's weights, with the options of `Deformer` and of `NeuralWeights.fit` (steps, width, seed, ...).
+
+    Raises
+    ------
+    ArgumentError
+        A setting is out of its range.
+    """
 
     def fitted(shape: Geometry, p: ArrayLike) -> Weights:
-        bounds = np.stack([shape.positions.min(axis=0), shape.positions.max(axis=0)])
-        return NeuralWeights.fit(p, bounds=bounds, **training)
+        return NeuralWeights.fit(p, bounds=_box(shape), **training)
 
-    return _of_weights(title, fitted, transform, temperature, adherence)
+    settings = settings_of("neural", adherence, transform=transform, temperature=temperature, **training)
+    return _of_weights(title, fitted, settings, adherence)
 
 
-def shape_aware(title: str = f"Shape-aware {OURS}", *, adherence: float = 0.0, seed: int = 0) -> Method:
-    """Weights that know the shape, with the options of `Deformer.deform` and of `ShapeAwareWeights.fit`."""
+def shape_aware(
+    title: str | None = None,
+    *,
+    transform: Transform = "rigid",
+    temperature: float = 1.0,
+    adherence: float = 0.0,
+    seed: int = 0,
+) -> Method:
+    """Weights that know the shape, with the options of `Deformer.deform` and of `ShapeAwareWeights.fit`.
+
+    Raises
+    ------
+    ArgumentError
+        A setting is out of its range.
+    """
 
     def fitted(shape: Geometry, p: ArrayLike) -> Weights:
         return ShapeAwareWeights.fit(p, shape.positions, shape.faces, seed=seed)
 
-    return _of_weights(title, fitted, adherence=adherence)
+    settings = settings_of("shape-aware", adherence, transform=transform, temperature=temperature, seed=seed)
+    return _of_weights(title, fitted, settings, adherence)
 
 
-def classic(title: str = baselines.TITLES["classic"], **options: Any) -> Method:
-    """Inverse-distance weights with the options of `baselines.classic`; 1/d, as in the paper, unless told otherwise."""
-    return _of_space(title, "classic", **{"alpha": 0.5, **options})
+def classic(
+    title: str | None = None,
+    *,
+    transform: Transform = "rigid",
+    temperature: float = 1.0,
+    alpha: float = PAPER_ALPHA,
+    epsilon: float = 0.0,
+) -> Method:
+    """Inverse-distance weights with the options of `InverseDistanceWeights`; alpha 0.5, as in the paper, if not given.
+
+    Raises
+    ------
+    ArgumentError
+        A setting is out of its range.
+    """
+
+    def fitted(shape: Geometry, p: ArrayLike) -> Weights:
+        return InverseDistanceWeights(p, alpha=alpha, epsilon=epsilon, bounds=_box(shape) if epsilon else None)
+
+    settings = settings_of(
+        "inverse-distance", transform=transform, temperature=temperature, alpha=alpha, epsilon=epsilon
+    )
+    return _of_weights(title, fitted, settings, adherence=0.0)
 
 
-def kpd(path: str | os.PathLike[str], title: str = baselines.TITLES["kpd"]) -> Method:
-    """KeypointDeformer with a network for the shape's category, from a `.safetensors` file.
+def kpd(network: KeypointDeformer | str | os.PathLike[str], title: str = baselines.TITLES["kpd"]) -> Method:
+    """KeypointDeformer with a network for the shape's category, or the `.safetensors` file of one.
 
     Raises
     ------
@@ -134,17 +194,27 @@ def kpd(path: str | os.PathLike[str], title: str = baselines.TITLES["kpd"]) -> M
     """
     from neuralmls_research.baselines.kpd import KeypointDeformer
 
-    return of_shapes(title, partial(baselines.get("kpd"), network=KeypointDeformer.read(path)))
+    known = network if isinstance(network, KeypointDeformer) else KeypointDeformer.read(network)
+
+    def bind(shape: Geometry, p: ArrayLike) -> Bound:
+        bound = known.bind(shape)
+        return Bound(lambda q: baselines.get("kpd")(shape, p, q, network=bound))
+
+    return Method(title, bind)
+
+
+def _box(shape: Geometry) -> Array:
+    return np.stack([shape.positions.min(axis=0), shape.positions.max(axis=0)])
 
 
 def _of_weights(
-    title: str,
+    title: str | None,
     fitted: Callable[[Geometry, ArrayLike], Weights],
-    transform: Transform = "rigid",
-    temperature: float = 1.0,
-    adherence: float = 0.0,
+    settings: Mapping[str, Any],
+    adherence: float,
 ) -> Method:
     """Moving least squares with weights that are fitted to the shape and its control points."""
+    transform, temperature = settings["transform"], settings["temperature"]
 
     def bind(shape: Geometry, p: ArrayLike) -> Bound:
         weights = fitted(shape, p)
@@ -158,28 +228,72 @@ def _of_weights(
             lambda q: lambda x: deformed(Deformer(x, weights, transform=transform), q),
         )
 
-    return Method(title, bind)
+    return Method(title or title_of(settings), bind, settings)
 
 
-def _of_space(title: str, name: str, **options: Any) -> Method:
+def _of_space(name: str) -> Method:
     """A baseline that moves each point by where it is, whatever the shape."""
 
     def bind(shape: Geometry, p: ArrayLike) -> Bound:
         def space(q: ArrayLike) -> SpaceMap:
-            return lambda x: baselines.get(name)(Surface(x, None), p, q, **options)
+            return lambda x: baselines.get(name)(Surface(x, None), p, q)
 
         return Bound(lambda q: space(q)(shape.positions), space)
 
-    return Method(title, bind)
+    return Method(baselines.TITLES[name], bind)
 
 
-METHODS: dict[str, Method] = {
-    "neural": neural(),
-    "neural-exact": neural(f"NeuralMLS, exact {OURS}", adherence=1.0),
-    "shape-aware": shape_aware(),
-    "shape-aware-exact": shape_aware(f"Shape-aware, exact {OURS}", adherence=1.0),
-    "classic": classic(),
-    "rbf": _of_space(baselines.TITLES["rbf"], "rbf"),
-    "arap": of_shapes(baselines.TITLES["arap"], baselines.get("arap")),
-    "biharmonic": of_shapes(baselines.TITLES["biharmonic"], baselines.get("biharmonic")),
+def _baseline(name: str) -> Method:
+    return of_shapes(baselines.TITLES[name], baselines.get(name))
+
+
+_MAKERS: dict[str, Callable[..., Method]] = {
+    "neural": neural,
+    "neural-exact": partial(neural, adherence=1.0),
+    "shape-aware": shape_aware,
+    "shape-aware-exact": partial(shape_aware, adherence=1.0),
+    "classic": classic,
 }
+
+METHODS: dict[str, Method] = {name: maker() for name, maker in _MAKERS.items()} | {
+    "rbf": _of_space("rbf"),
+    "arap": _baseline("arap"),
+    "arap-from-fit": of_shapes(
+        f"{baselines.TITLES['arap']} from the rigid fit", partial(baselines.get("arap"), start="fit")
+    ),
+    "biharmonic": _baseline("biharmonic"),
+    "biharmonic-displacements": _baseline("biharmonic-displacements"),
+}
+
+
+def with_settings(methods: Mapping[str, Method], said: Mapping[str, Any]) -> dict[str, Method]:
+    """Return the methods with what a person said of them: each takes those of the settings that it has.
+
+    Parameters
+    ----------
+    methods : dict of names, as in `METHODS`, to methods
+    said : dict
+        Settings by the names that sessions have for them: temperature, transform, alpha, steps, width, seed.
+
+    Raises
+    ------
+    ArgumentError
+        A setting is out of its range, or none of the methods has it.
+
+    Examples
+    --------
+    >>> {name: method.title for name, method in with_settings(METHODS, {"alpha": 2.0}).items()}["classic"]
+    'Classic MLS (alpha 2: 1/d^4)'
+    """
+    for setting in said:
+        if not any(setting in own(method.settings) for method in methods.values()):
+            raise ArgumentError(
+                f"{setting}: none of the methods {', '.join(methods) or 'asked for'} has such a setting"
+            )
+    changed = dict(methods)
+    for name, method in methods.items():
+        before = own(method.settings)
+        after = before | {setting: value for setting, value in said.items() if setting in before}
+        if after != before:
+            changed[name] = _MAKERS[name](**after)
+    return changed

@@ -18,18 +18,27 @@ from numpy.typing import NDArray
 from neuralmls import farthest_of
 from neuralmls.errors import ArgumentError, FileError
 from neuralmls.plugin import as_points, as_triangles
-from neuralmls_research.experiments.methods import METHODS, OURS, Array, Method, Surface, classic, neural
+from neuralmls_research.experiments.loose_parts import with_loose_parts
+from neuralmls_research.experiments.methods import METHODS, Array, Method, Surface, classic, neural
 
 MOST = 6  # poses of a file, spread evenly over it
 
-# The methods as they were first measured: 1/d^4, and enough steps for 40 control points to arrive.
+ALPHA = 2.0  # of the classic weights: 1/d^4 is their best here, and a rival is to be at its best
+OF_SURFACES = ("arap", "arap-from-fit", "biharmonic", "biharmonic-displacements")
+# The methods as they were first measured: enough steps for 40 control points to arrive.
 POSE_METHODS: dict[str, Method] = METHODS | {
-    "classic": classic("Classic MLS, 1/d^4", alpha=2.0),
-    "neural": neural("NeuralMLS, 200 steps", steps=200),
-    "neural-exact": neural(f"NeuralMLS, 200 steps, exact {OURS}", steps=200, adherence=1.0),
+    "classic": classic(alpha=ALPHA),
+    "neural": neural(steps=200),
+    "neural-exact": neural(steps=200, adherence=1.0),
+    **{name: with_loose_parts(METHODS[name]) for name in OF_SURFACES},
 }
 
-QUICK = ("rbf", "classic", "neural", "shape-aware-exact", "arap")  # biharmonic weights take ten times as long
+QUICK = tuple(name for name in POSE_METHODS if name != "biharmonic")  # its weights take ten times as long
+
+
+def is_ours(method: Method) -> bool:
+    """Whether a method is of this package, and not a rival: weights that are learned."""
+    return method.seed is not None
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from neuralmls_research.baselines.biharmonic import weights
 from research.tests.baselines.conftest import bar
 
 EVERYWHERE = ("classic", "rbf")
-ON_MESHES = ("arap", "biharmonic")
+ON_MESHES = ("arap", "biharmonic", "biharmonic-displacements")
 SURFACE = EVERYWHERE + ON_MESHES
 TARGET = np.array([[0, 0, 0], [1, 0, 0], [1.0, 2 / 12, 2 / 12], [0.5, 0, 2 / 12]])
 
@@ -142,6 +142,33 @@ def test_arap_says_when_its_iterations_do_not_settle(a_bar, monkeypatch):
     monkeypatch.setattr(module, "UNSETTLED", 1e-12)
     with pytest.raises(NotApplicable, match="does not converge: the last 5 of 50 iterations still move a vertex by"):
         baselines.get("arap")(a_bar, *control_points(lambda p: p * [0.5, 1, 1]))
+
+
+@pytest.mark.parametrize("degrees", [60, 170])
+def test_arap_from_the_rigid_fit_finds_a_rigid_motion_where_from_rest_it_need_not(a_bar, degrees):
+    turn, step = np.radians(degrees), np.array([2.0, -1, 0.5])
+    rotation = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
+    p, q = control_points(lambda p: p @ rotation.T + step)
+    y = baselines.get("arap")(a_bar, p, q, start="fit")
+    np.testing.assert_allclose(
+        y, a_bar.positions @ rotation.T + step, atol=1e-6
+    )  # libigl: rotations in single precision
+
+
+def test_arap_never_starts_from_a_reflection(a_bar):
+    p, q = control_points(lambda p: p * [1, 1, -1])  # mirrored: the nearest rotation is none that mirrors
+    y = baselines.get("arap")(a_bar, p, q, start="fit")
+    sides = (a_bar.positions[a_bar.faces], y[a_bar.faces])
+    before, after = (np.einsum("fi,fi->f", x[:, 0], np.cross(x[:, 1], x[:, 2])).sum() for x in sides)
+    assert before * after > 0
+
+
+def test_biharmonic_displacements_are_linear_in_the_targets(a_bar):
+    p = TARGET
+    moves = np.random.default_rng(0).normal(size=(2, *p.shape))
+    bend = baselines.get("biharmonic-displacements")
+    a, b, both = (bend(a_bar, p, p + d) - a_bar.positions for d in (*moves, moves.sum(axis=0)))
+    np.testing.assert_allclose(a + b, both, atol=1e-6)
 
 
 def test_arap_keeps_edges_longer_than_classic_weights_do(a_bar):

@@ -1,4 +1,4 @@
-"""`neuralmls compare` and `neuralmls benchmark poses`."""
+"""`neuralmls compare`."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_only_some_methods_if_asked_for(run, moved, refused):
     told = json.loads(run(*moved, "--json", "--methods", "classic,rbf").out)
     assert [method["name"] for method in told["methods"]] == ["classic", "rbf"]
     known = "neural, neural-exact, shape-aware, shape-aware-exact, classic"
-    refused(2, *moved, "--methods", "kpd", words=("--methods", known, "'kpd'"))
+    refused(2, *moved, "--methods", "keypoint-deformer", words=("--methods", known, "'keypoint-deformer'"))
 
 
 def test_csv_has_a_row_a_method(run, moved, here):
@@ -73,6 +73,9 @@ def test_csv_has_a_row_a_method(run, moved, here):
     assert [row["name"] for row in rows] == list(METHODS)
     assert float(rows[1]["strain_dirichlet_mean"]) >= 4
     assert float(rows[1]["at_vertices"]) > 0
+    alphas = {row["name"]: row["settings_weights_alpha"] for row in rows}
+    assert (alphas["classic"], alphas["neural"], alphas["rbf"]) == ("0.5", "", "")
+    assert not {"settings", "measures", "seeds"} & rows[0].keys()
 
 
 def test_deformed_shapes_are_written_if_asked_for(run, moved, here, refused):
@@ -125,62 +128,6 @@ def test_figures_of_nothing_are_no_numbers(run, moved, here):
     assert run("compare", "flat.obj", *moved[2:]).code == 0
 
 
-@pytest.fixture
-def folder(here):
-    """Poses of a block of points: moved, turned, and a file that is none."""
-    rest = np.random.default_rng(0).uniform(size=(40, 3))
-    turned = rest @ np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
-    (here / "poses").mkdir()
-    faces = np.arange(39).reshape(-1, 3)
-    np.savez(here / "poses" / "block.npz", rest=rest, poses=np.stack([rest + 2, turned]), faces=faces)
-    return here / "poses"
-
-
-POSES = ("benchmark", "poses", "poses", "--counts", "4,6")
-
-
-def test_rigid_motion_is_found_by_moving_least_squares(run, folder):
-    told = json.loads(run(*POSES, "--methods", "classic,neural", "--json").out)
-    assert [row["control_points"] for row in told["rows"]] == [4, 6]
-    for row in told["rows"]:
-        assert row["errors"] == {"classic": pytest.approx(0, abs=1e-6), "neural": pytest.approx(0, abs=1e-6)}
-        assert row["not_applicable"] == {}
-
-
-def test_table_of_poses(run, folder):
-    pytest.importorskip("igl")
-    ran = run(*POSES)
-    assert ran.code == 0
-    head = next(line for line in ran.out.splitlines() if "control points" in line)
-    assert [head.index(word) for word in ("RBF", "Classic", "NeuralMLS", "ARAP")] == sorted(
-        head.index(word) for word in ("RBF", "Classic", "NeuralMLS", "ARAP")
-    )
-    assert "ARAP does not apply to block, 4 control points: ARAP needs" in ran.out
-
-
-def test_a_bad_file_is_one_sentence_and_the_others_are_measured(run, folder):
-    (folder / "bad.npz").write_bytes(b"nothing")
-    ran = run(*POSES, "--methods", "classic")
-    assert ran.code == 1
-    assert ran.err.startswith("neuralmls: error: poses/bad.npz: this is no .npz file of arrays: ")
-    assert ran.err.count("\n") == 1
-    assert "block" in ran.out
-    (folder / "block.npz").unlink()
-    ran = run(*POSES, "--methods", "classic")
-    assert (ran.code, ran.out) == (1, "")
-
-
-def test_what_benchmark_cannot_do_is_refused(refused, folder, here):
-    (here / "empty").mkdir()
-    refused(1, "benchmark", "poses", "none", words=("none", "folder of .npz files"))
-    refused(1, "benchmark", "poses", "empty", words=("empty", "no .npz file"))
-    refused(2, "benchmark", "poses", "poses", "--methods", "classic,magic", words=("--methods", "'magic'"))
-    for counts in ("0", "a", "", "4,,6", "-3"):
-        refused(2, "benchmark", "poses", "poses", f"--counts={counts}", words=("--counts",))
-    refused(1, *POSES[:3], "--counts", "41", "--methods", "classic", words=("block.npz", "at most 40", "found 41"))
-    refused(2, "benchmark", words=("missing command",))
-
-
 def test_rotations_are_left_out_and_that_is_said(run, here):
     points = (
         nm.ControlPoints.read("points.csv").moved({"top": [0, 1, 0]}).oriented({"top": nm.Orientation((0, 1, 0), 40)})
@@ -189,3 +136,80 @@ def test_rotations_are_left_out_and_that_is_said(run, here):
     ran = run("compare", "shape.obj", "--points", "turned.json", "--methods", "rbf")
     assert ran.code == 0
     assert "rotations of control points are left out" in ran.err
+
+
+def by_name(told):
+    return {method["name"]: method for method in told["methods"]}
+
+
+def test_settings_reach_the_methods_that_have_them_and_are_told(run, moved):
+    said = ("--alpha", "2", "--temperature", "0.5", "--transform", "affine", "--steps", "7", "--width", "32")
+    chosen = ("--methods", "neural,classic,rbf")
+    told = by_name(json.loads(run(*moved, "--json", *chosen, *said, "--seed", "3").out))
+    weights = told["neural"]["settings"]["weights"]
+    assert (weights["steps"], weights["width"], weights["seed"]) == (7, 32, 3)
+    assert told["classic"]["settings"]["weights"]["alpha"] == 2
+    for name in ("neural", "classic"):
+        assert (told[name]["settings"]["temperature"], told[name]["settings"]["transform"]) == (0.5, "affine")
+    assert told["rbf"]["settings"] is None
+    out = run(*moved, *chosen, *said).out
+    assert "Classic MLS (alpha 2: 1/d^4, affine, temperature 0.5)" in out
+    assert "alpha 2: 1/d^4, epsilon 0, affine, temperature 0.5, handles soft" in out
+    shape, points = nm.read("shape.obj"), nm.ControlPoints.read("moved.csv")
+    y = nm.Deformer(shape.positions, nm.InverseDistanceWeights(points.sources, alpha=2), transform="affine").deform(
+        points.targets, 0.5
+    )
+    expected = measure(shape.positions, y, shape.faces, points.sources, points.targets)
+    assert told["classic"]["measures"]["laplacian"]["mean"] == pytest.approx(expected.laplacian.mean)
+
+
+def test_settings_of_a_session_hold_where_nothing_else_is_said(run, moved):
+    points = nm.ControlPoints.read("moved.csv")
+    nm.Session(points, weights="inverse-distance", alpha=1.5, temperature=0.7).write("session.json")
+    asked = ("compare", "shape.obj", "--points", "session.json", "--methods", "neural,classic", "--json")
+    told = by_name(json.loads(run(*asked).out))
+    assert told["classic"]["settings"]["weights"]["alpha"] == 1.5
+    assert {method["settings"]["temperature"] for method in told.values()} == {0.7}
+    told = by_name(json.loads(run(*asked, "--alpha", "1", "--temperature", "2").out))
+    assert told["classic"]["settings"]["weights"]["alpha"] == 1
+    assert {method["settings"]["temperature"] for method in told.values()} == {2}
+
+
+def test_settings_out_of_range_or_of_no_method_are_refused(refused, moved):
+    refused(2, *moved, "--temperature", "0", words=("temperature: expected a number above 0",))
+    refused(2, *moved, "--steps", "-1", words=("steps",))
+    refused(2, *moved, "--methods", "neural,rbf", "--alpha", "1", words=("alpha", "none of the methods neural, rbf"))
+    refused(2, *moved, "--seeds", "0", words=("--seeds: expected 1 to",))
+
+
+def test_seeds_give_means_deviations_and_what_hangs_on_them(run, moved):
+    asked = (*moved, "--methods", "neural,classic", "--steps", "3", "--width", "16", "--seed", "5")
+    told = by_name(json.loads(run(*asked, "--seeds", "3", "--json").out))
+    each = [run["measures"]["at_points"] for run in told["neural"]["seeds"]]
+    assert [run["seed"] for run in told["neural"]["seeds"]] == [5, 6, 7]
+    assert len(set(each)) == 3
+    assert told["neural"]["measures"]["at_points"] == pytest.approx(np.mean(each))
+    assert told["neural"]["deviation"]["at_points"] == pytest.approx(np.std(each, ddof=1))
+    assert "deviation" not in told["classic"]
+    alone = by_name(json.loads(run(*asked[:-1], "6", "--json").out))
+    assert alone["neural"]["measures"]["at_points"] == pytest.approx(each[1])
+    ran = run(*asked, "--seeds", "3")
+    assert "mean ± deviation over seeds 5 to 7: neural" in ran.out
+    assert ran.out.count(" ± ") > 8
+
+
+def test_orders_that_hang_on_a_seed_are_named():
+    from neuralmls_research.commands.comparison import _orders
+
+    def method(name, *values):
+        runs = [{"seed": seed, "measures": {"at_points": value}} for seed, value in enumerate(values)]
+        return {"name": name, "measures": runs[0]["measures"], **({"seeds": runs} if len(runs) > 1 else {})}
+
+    rest = dict.fromkeys(("at_vertices", "curvature", "laplacian", "strain"))
+    methods = [method("neural", 1.0, 1.2, 2.5), method("classic", 2.0)]
+    for one in methods:
+        for run_of_it in one.get("seeds", [one]):
+            run_of_it["measures"] = {**rest, **run_of_it["measures"]}
+    assert _orders(methods) == [
+        {"measure": "off targets, at the point", "better": "neural", "worse": "classic", "seeds": (2,)}
+    ]

@@ -51,7 +51,7 @@ def cases_of_boxes(folder: Path) -> list[Case]:
 
 def make_study_of_boxes() -> Study:
     with TemporaryDirectory() as folder:
-        return build(cases_of_boxes(Path(folder)), methods=METHODS_OF_BOXES, height=60)
+        return build(cases_of_boxes(Path(folder)), methods=METHODS_OF_BOXES, kpd={}, question="best", height=60)
 
 
 @cache

@@ -8,10 +8,12 @@ import pytest
 import neuralmls as nm
 from neuralmls_research import baselines
 from neuralmls_research.experiments.compare import attempt
-from neuralmls_research.experiments.methods import METHODS, Surface, classic, kpd, neural, of_shapes
+from neuralmls_research.experiments.methods import METHODS, Surface, classic, kpd, neural, of_shapes, with_settings
 from neuralmls_research.metrics import folded_places
 
 pytestmark = pytest.mark.usefixtures("brief_training")
+
+OF_SURFACES = ("arap", "arap-from-fit", "biharmonic", "biharmonic-displacements")
 
 
 @pytest.fixture
@@ -34,7 +36,7 @@ def moved(sheet: Surface) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("name", METHODS)
 def test_every_method_moves_its_control_points(name, sheet, moved):
-    if name in ("arap", "biharmonic"):
+    if name in OF_SURFACES:
         pytest.importorskip("igl")
     result = attempt(METHODS[name], sheet, *moved)
     assert result.reason is None
@@ -44,7 +46,7 @@ def test_every_method_moves_its_control_points(name, sheet, moved):
     assert np.array_equal(METHODS[name](sheet, moved[0], moved[0]), sheet.positions)
 
 
-@pytest.mark.parametrize("name", [name for name in METHODS if name not in ("arap", "biharmonic")])
+@pytest.mark.parametrize("name", [name for name in METHODS if name not in OF_SURFACES])
 def test_the_map_of_space_gives_the_positions_at_the_vertices(name, sheet, moved):
     bound = METHODS[name].bind(sheet, moved[0])
     f = bound.space(moved[1])
@@ -62,6 +64,34 @@ def test_options_reach_the_weights(sheet, moved):
     weights = nm.NeuralWeights.fit(p, bounds=bounds, steps=5, seed=3, width=64)
     expected = nm.Deformer(sheet.positions, weights).deform(q, 0.5)
     assert np.array_equal(neural(steps=5, seed=3, width=64, temperature=0.5)(sheet, p, q), expected)
+
+
+def test_a_title_has_what_is_not_at_its_default_and_alpha_always():
+    titles = {name: method.title for name, method in METHODS.items()}
+    assert titles["neural"] == "NeuralMLS"
+    assert titles["neural-exact"] == "NeuralMLS, exact (ours)"
+    assert titles["classic"] == "Classic MLS (alpha 0.5: 1/d)"
+    assert classic(alpha=2.0, temperature=0.5).title == "Classic MLS (alpha 2: 1/d^4, temperature 0.5)"
+    assert neural(steps=48, width=128, transform="affine").title == "NeuralMLS (width 128, 48 steps, affine)"
+
+
+def test_what_a_person_says_goes_to_the_methods_that_have_it():
+    changed = with_settings(METHODS, {"alpha": 2.0, "seed": 3, "temperature": 0.5})
+    own = {name: method.settings for name, method in changed.items()}
+    assert own["classic"]["weights"]["alpha"] == 2.0
+    assert own["neural-exact"]["weights"]["seed"] == own["shape-aware"]["weights"]["seed"] == 3
+    assert own["neural-exact"]["handles"] == "exact"
+    assert {settings["temperature"] for settings in own.values() if settings} == {0.5}
+    assert changed["rbf"] is METHODS["rbf"]
+    several = with_settings({"neural": neural(steps=200)}, {"seed": 1})["neural"].settings["weights"]
+    assert (several["steps"], several["seed"]) == (200, 1)
+
+
+def test_a_setting_that_no_method_has_or_that_is_out_of_range_is_refused():
+    with pytest.raises(nm.ArgumentError, match="alpha: none of the methods neural, rbf has such a setting"):
+        with_settings({name: METHODS[name] for name in ("neural", "rbf")}, {"alpha": 2.0})
+    with pytest.raises(nm.ArgumentError, match="temperature: expected a number above 0, found -1"):
+        with_settings(METHODS, {"temperature": -1.0})
 
 
 def test_what_does_not_apply_says_why(sheet, moved):

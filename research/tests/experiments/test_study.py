@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import re
+from dataclasses import replace
 from math import sqrt
 from pathlib import Path
 from typing import Any
@@ -16,7 +18,7 @@ pytest.importorskip("pyvista", reason="the extra 'figures' is not installed")
 from neuralmls.cli import main
 from neuralmls.errors import ArgumentError, FileError
 from neuralmls_research.experiments.study.answers import read_answers
-from neuralmls_research.experiments.study.build import Study, build
+from neuralmls_research.experiments.study.build import Study, build, page
 from neuralmls_research.experiments.study.cases import CATEGORIES, COUNT, cases
 from neuralmls_research.experiments.study.key import Question, opened, sealed
 from neuralmls_research.experiments.study.report import interval, shares
@@ -126,7 +128,7 @@ def test_a_method_that_does_not_apply_is_left_out_of_its_questions_only(boxes):
     assert sorted(chair.methods) == ["classic", "neural"]
     assert chair.left_out == {
         "shift": "this is no car",
-        "kpd": "KeypointDeformer has no network for the category chair",
+        "keypoint-deformer": "KeypointDeformer has no network for the category chair",
     }
     assert sorted(car.methods) == ["classic", "neural", "shift"]
 
@@ -140,7 +142,7 @@ def test_a_question_needs_two_methods(tmp_path):
     with pytest.raises(ArgumentError, match="box chair, up: expected at least two methods"):
         build(cases_of_boxes(tmp_path), methods=only, height=60)
     with pytest.raises(ArgumentError, match="at least one deformation"):
-        build([], height=60)
+        build([], methods=METHODS_OF_BOXES, height=60)
 
 
 def test_the_key_opens_to_what_was_sealed_and_only_for_its_study():
@@ -150,6 +152,22 @@ def test_the_key_opens_to_what_was_sealed_and_only_for_its_study():
     with pytest.raises(FileError, match="cannot be read"):
         opened(STUDY, "%%%")
     assert sealed(QUESTIONS, "other pictures")[0] != STUDY
+
+
+@pytest.mark.parametrize(("question", "words"), [("realistic", "looks most realistic"), ("best", "looks best")])
+def test_the_page_asks_what_it_is_told_to(question, words):
+    html = page({}, question)
+    assert f"<title>Which result {words}?</title>" in html
+    assert f"Choose the one that {words} to you:" in html
+    assert html.count(words) == 4
+    assert "{{" not in html
+
+
+def test_what_was_asked_is_in_the_key():
+    asked = replace(QUESTIONS[0], asked="realistic")
+    study, key = sealed([asked], "pictures")
+    assert opened(study, key)[0].asked == "realistic"
+    assert QUESTIONS[0].asked == "best"  # pages of before did not say
 
 
 # What is counted
@@ -279,6 +297,27 @@ def test_the_report_for_people_and_for_machines(tmp_path, capsys):
     assert told["left_out"][0]["reason"] == "no network"
 
 
+def test_the_table_is_written_for_machines_and_for_papers(tmp_path, capsys):
+    files = [str(saved(tmp_path, "anna", {"q1": 1, "q2": 0, "q3": 1})), str(saved(tmp_path, "bert", {"q1": 0}))]
+    table, paper = tmp_path / "table.csv", tmp_path / "table.tex"
+    assert main(["study", "report", *files, "--csv", str(table), "--latex", str(paper)]) == 0
+    rows = list(csv.DictReader(table.read_text().splitlines()))
+    expected = shares(read_answers(files))
+    assert [(row["category"], row["method"]) for row in rows] == [(row.category, row.method) for row in expected]
+    assert [float(row["low"]) for row in rows] == [row.low for row in expected]
+    text = paper.read_text()
+    assert "% 2 participants" in text
+    assert [line.split(" & ")[0] for line in text.splitlines() if line.endswith(r" \\")][1:] == [
+        "chair",
+        "car",
+        "overall",
+    ]
+    chair = next(line for line in text.splitlines() if line.startswith("chair"))
+    assert re.fullmatch(r"chair & 66\.7\\,\\% \[[\d., ]+\] & 33\.3\\,\\% \[[\d., ]+\] & -- \\\\", chair)
+    assert main(["study", "report", *files, "--csv", str(table)]) == 2
+    assert "there is such a file already" in capsys.readouterr().err
+
+
 def test_a_bad_file_ends_the_report_in_one_sentence(tmp_path, capsys):
     assert main(["study", "report", str(tmp_path / "none.json")]) == 1
     out, err = capsys.readouterr()
@@ -293,6 +332,7 @@ def test_a_study_is_refused_before_any_work(tmp_path, capsys, monkeypatch):
         (["-o", str(tmp_path)], 2, "there is such a file already"),
         (["-o", str(tmp_path / "study.html")], 1, "study.html"),
         (["-o", str(tmp_path / "new"), "--kpd", "table=x.safetensors"], 2, "expected CATEGORY=FILE"),
+        (["-o", str(tmp_path / "new"), "--methods", "neural,magic"], 2, "'magic'"),
         (["-o", str(tmp_path / "new"), "--kpd", "car=none.safetensors"], 1, "none.safetensors"),
     ):
         assert main(["study", "build", *arguments]) == code

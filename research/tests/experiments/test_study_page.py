@@ -192,7 +192,7 @@ def test_on_a_tablet_pictures_are_touched(visit):
     visitor = visit(seed=1, has_touch=True, is_mobile=True)
     assert not visitor.page.locator(".keys").is_visible()
     visitor.page.locator("#begin").tap()
-    assert visitor.page.locator("#hint").inner_text() == "Touch the picture that looks best"
+    assert visitor.page.locator("#hint").inner_text() == "Touch the picture that you choose"
     visitor.page.locator(".result").nth(1).tap()
     visitor.page.locator("#next").tap()
     assert visitor.heading().startswith("Question 2 of 4")

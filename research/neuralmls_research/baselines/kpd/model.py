@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from neuralmls import Shape
 from neuralmls.errors import ArgumentError, FileError, NeuralMLSError, NotApplicable
 from neuralmls.plugin import as_path, as_points
 from neuralmls_research.baselines.checks import library
@@ -84,6 +84,14 @@ class BoundKeypoints:
         return self._rest + self.scale * (self.coordinates @ (self.influence.T @ offsets))
 
 
+class HasPositions(Protocol):
+    """What keypoints are found on: a `Shape`, or anything that has its positions."""
+
+    @property
+    def positions(self) -> Array:
+        """(n, 3)."""
+
+
 class KeypointDeformer:
     """The network: finds the keypoints of a shape of its category, and deforms the shape by them.
 
@@ -128,7 +136,18 @@ class KeypointDeformer:
         except NeuralMLSError as error:
             raise FileError(f"{source}: {error}") from error
 
-    def bind(self, shape: Shape) -> BoundKeypoints:
+    def keypoints(self, shape: HasPositions) -> Array:
+        """Return a shape's keypoints alone, (K, 3), in the coordinates of the file.
+
+        Raises
+        ------
+        NotApplicable
+            The shape is not in space, or has no size.
+        """
+        x, centre, scale = normalise(shape.positions)
+        return network.keypoints(self._layers, x) * scale + centre
+
+    def bind(self, shape: HasPositions) -> BoundKeypoints:
         """Find a shape's keypoints, its cage, and its vertices' coordinates in it.
 
         Raises

@@ -32,6 +32,8 @@ class Question:
         The method that made each result, in the order of the page's file.
     left_out : dict
         Why other methods have no result here, by their name.
+    asked : str
+        What the page asks, as `WORDINGS` names it.
     """
 
     id: str
@@ -41,6 +43,7 @@ class Question:
     origin: str
     methods: tuple[str, ...]
     left_out: dict[str, str]
+    asked: str = "best"  # as pages did before there was another question
 
 
 def sealed(questions: list[Question], pictures: str) -> tuple[str, str]:

@@ -176,7 +176,7 @@ function showChoice() {
   one("#next").ariaDisabled = String(chosen === undefined);
   one("#next").textContent = at + 1 < sequence.length ? "Next →" : "Finish →";
   one("#hint").textContent = chosen === undefined
-    ? touched ? "Touch the picture that looks best" : `Choose with the keys 1 to ${question.order.length}, or click a picture`
+    ? touched ? "Touch the picture that you choose" : `Choose with the keys 1 to ${question.order.length}, or click a picture`
     : `${touched ? "Next" : "Enter"} goes on; you may still change your choice`;
 }
 
