@@ -22,7 +22,7 @@ from neuralmls_research.experiments.reproduce.items import ITEMS, NAMES, Item, c
 from neuralmls_research.experiments.reproduce.lab import Lab
 from neuralmls_research.experiments.reproduce.line import peaks
 from neuralmls_research.experiments.reproduce.page import page
-from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report, Table
+from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report, Table, Verdict
 from neuralmls_research.experiments.reproduce.run import reproduce
 from neuralmls_research.experiments.reproduce.sharp_edges import angles, neighbours, single
 
@@ -109,14 +109,13 @@ def test_without_the_papers_shapes_the_reports_say_so(everything):
 def test_a_claim_about_the_papers_own_airplane_has_no_verdict_without_it(everything):
     _, reports = everything
     (claim,) = (c for c in reports[chosen(["table1"])[0]].claims if "1764" in c.paper)
-    assert claim.holds is None
-    assert claim.verdict == "cannot be tested here"
+    assert claim.verdict == Verdict.UNTESTABLE
 
 
 def test_neural_weights_on_a_line_have_one_peak_each(tmp_path):
     report = weights_1d.run(Lab(tmp_path))
     assert report.numbers["most_peaks"]["neural"] == 1 < report.numbers["most_peaks"]["classic"]
-    assert all(claim.holds for claim in report.claims)
+    assert all(claim.verdict == Verdict.REPRODUCED for claim in report.claims)
 
 
 def test_the_neural_deformation_of_a_line_only_rises_where_its_targets_do(tmp_path):
@@ -155,15 +154,36 @@ def test_the_page_escapes_what_it_is_given():
     report = Report(
         "a < b",
         [Picture("a.png", 'x & "y"')],
-        [Table("T > 1", ["<m>"], [["&"]])],
-        [Claim("1 < 2", "<b>", True), Claim("3 < 2", "no", False)],
+        [Table("t", "T > 1", ["<m>"], [["&"]])],
+        [
+            Claim("1 < 2", "<i>", "<u>", "<b>", Verdict.REPRODUCED, "<s>"),
+            Claim("3 < 2", "", "", "", Verdict.CONTRADICTED, ""),
+            Claim("ours", "", "", "", Verdict.CONTRADICTED, "", ours=True),
+        ],
         missing=["<all>"],
     )
     html = page({ITEMS[0]: report}, "0.0.0")
     assert "<m>" not in html
     assert "<all>" not in html
-    for text in ("A &lt; b", "x &amp; &quot;y&quot;", "&lt;m&gt;", "&lt;b&gt;", "1 reproduced, 1 not reproduced"):
+    for text in ("A &lt; b", "x &amp; &quot;y&quot;", "&lt;m&gt;", "&lt;b&gt;", "&lt;i&gt;", "&lt;u&gt;", "&lt;s&gt;"):
         assert text in html
+
+
+def test_checks_of_our_own_have_no_part_in_the_papers_verdicts():
+    kinds = [(Verdict.REPRODUCED, False), (Verdict.CONTRADICTED, False), (Verdict.CONTRADICTED, True)]
+    html = page({ITEMS[0]: Report("s", claims=[Claim("p", "m", "r", "m", v, "c", ours) for v, ours in kinds])}, "0")
+    assert "1 reproduced, 0 partly reproduced, 1 contradicted, 0 cannot be tested here" in html
+    assert html.count("Our own check") == 1
+
+
+def test_every_claim_has_a_rule_and_a_conclusion_and_every_table_its_own_name(everything):
+    reports = everything[1].values()
+    for claim in (claim for report in reports for claim in report.claims):
+        assert all((claim.paper, claim.measure, claim.rule, claim.measured, claim.reader)), claim
+        assert isinstance(claim.verdict, Verdict)
+    names = [table.name for report in reports for table in report.tables]
+    assert len(set(names)) == len(names)
+    assert all(re.fullmatch(r"[a-z0-9-]+", name) for name in names)
 
 
 def test_cutting_keeps_the_surface_and_shortens_its_edges():

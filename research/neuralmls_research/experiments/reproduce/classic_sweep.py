@@ -47,7 +47,7 @@ def classic_sweep(
             Picture(f"{item}-{parameter}.png", caption),
             Picture(f"{item}-curves.png", "Measures of the same shapes; the broken line is the neural one."),
         ],
-        tables=[table(f"Over {parameter}.", parameter, found, SHOWN)],
+        tables=[table(f"{item}-{parameter}", f"Over {parameter}.", parameter, found, SHOWN)],
         numbers=numbers_of(found),
         missing=subject.missing,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from neuralmls import Deformer
+from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.drawing import CLASSIC, NEURAL, draw_weights, plots
 from neuralmls_research.experiments.reproduce.lab import Lab
 from neuralmls_research.experiments.reproduce.line import BEFORE, SETTING, X, functions, weights_on_line
@@ -35,6 +36,8 @@ def run(lab: Lab) -> Report:
     # The displacements of the control points only rise: what a curve goes down by, it made up.
     down = {kind: float(-np.minimum(np.diff(curve[:, 0]), 0).sum()) for kind, curve in moved.items()}
     error = {kind: float(np.abs(miss).max()) for kind, miss in missed.items()}
+    smooth = verdicts.less("the neural value", [down["neural"]], factor=10, rival=down["classic"])
+    close = verdicts.below(0.05, [error["neural"]])
     return Report(
         SETTING.format(width=lab.width),
         pictures=[
@@ -47,16 +50,23 @@ def run(lab: Lab) -> Report:
         ],
         claims=[
             Claim(
-                "Neural weights give a piecewise smooth deformation, classic ones one that wavers.",
-                f"The displacements asked for only rise; the neural curve goes down by {down['neural']:.2f} in all, "
+                paper="Neural weights give a piecewise smooth deformation, classic ones one that wavers.",
+                measure="How far the displacement goes down between targets that only rise.",
+                rule=smooth.rule,
+                measured=f"The displacements asked for only rise; the neural curve goes down by "
+                f"{down['neural']:.2f} in all, "
                 f"the classic one by {down['classic']:.2f} (of 10 that they rise by).",
-                down["neural"] < 0.1 * down["classic"],
+                verdict=smooth.verdict,
+                reader="Neural weights give steps, classic ones turn back.",
             ),
             Claim(
-                "The control points are approximated closely, though nothing forces an interpolation.",
-                f"Worst distance from a displacement asked for: neural {error['neural']:.4f}, "
+                paper="The control points are approximated closely, though nothing forces an interpolation.",
+                measure="The worst distance from a displacement asked for.",
+                rule=close.rule,
+                measured=f"Worst distance from a displacement asked for: neural {error['neural']:.4f}, "
                 f"classic {error['classic']:.4f} (of 10).",
-                error["neural"] < 0.05,
+                verdict=close.verdict,
+                reader="Control points nearly arrive.",
             ),
         ],
         numbers={"goes_down_by": down, "worst_control_point_error": error},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.classic_sweep import classic_sweep
 from neuralmls_research.experiments.reproduce.lab import Lab
 from neuralmls_research.experiments.reproduce.report import Claim, Report
@@ -19,18 +20,28 @@ def run(lab: Lab) -> Report:
     sweep = classic_sweep(lab, "fig10", "epsilon", options, 5, CAPTION)
     neural, numbers = sweep.neural.numbers, [o.numbers for o in sweep.classic.values()]
     least = min(row["curvature_median"] for row in numbers)
+    behind = verdicts.times_more(100, numbers[0]["error_at_points"], numbers[-1]["error_at_points"])
+    distorted = verdicts.less("the neural value", [neural["curvature_median"]], factor=2, rival=least)
     sweep.report.claims += [
         Claim(
-            "A larger epsilon leaves the control points behind.",
-            f"Mean distance of control points from their targets: {numbers[0]['error_at_points']:.1g} with epsilon "
+            paper="A larger epsilon leaves the control points behind.",
+            measure="Control-point error.",
+            rule=behind.rule,
+            measured=f"Mean distance of control points from their targets: {numbers[0]['error_at_points']:.1g} "
+            f"with epsilon "
             f"1e-8, {numbers[-1]['error_at_points']:.4f} with 1e-2.",
-            numbers[-1]["error_at_points"] > 100 * numbers[0]["error_at_points"],
+            verdict=behind.verdict,
+            reader="Epsilon costs closeness.",
         ),
         Claim(
-            "No epsilon takes the distortion of classic weights away.",
-            f"Median change of mean curvature: {least:.3g} with the best epsilon, {neural['curvature_median']:.3g} "
+            paper="No epsilon takes the distortion of classic weights away.",
+            measure="Median change of mean curvature.",
+            rule=distorted.rule,
+            measured=f"Median change of mean curvature: {least:.3g} with the best epsilon, "
+            f"{neural['curvature_median']:.3g} "
             "with neural weights.",
-            least > 2 * neural["curvature_median"],
+            verdict=distorted.verdict,
+            reader="Epsilon is no answer to the distortion.",
         ),
     ]
     return sweep.report

@@ -128,10 +128,10 @@ def _measured(subject: Subject, y: Array) -> Measures:
     return measure(subject.positions, y, subject.faces, subject.points.sources, subject.points.targets)
 
 
-def table(caption: str, head: str, found: Sequence[Outcome], columns: Sequence[str]) -> Table:
+def table(name: str, caption: str, head: str, found: Sequence[Outcome], columns: Sequence[str]) -> Table:
     """The measures of outcomes, those that `columns` names."""
-    rows = [[o.label, *(COLUMNS[name][1].format(o.numbers[name]) for name in columns)] for o in found]
-    return Table(caption, [head, *(COLUMNS[name][0] for name in columns)], rows)
+    rows = [[o.label, *(COLUMNS[column][1].format(o.numbers[column]) for column in columns)] for o in found]
+    return Table(name, caption, [head, *(COLUMNS[column][0] for column in columns)], rows)
 
 
 def numbers(found: Sequence[Outcome]) -> dict[str, dict[str, float]]:

@@ -65,7 +65,7 @@ def _items(reports: dict[Item, Report]) -> dict[str, Any]:
         item.name: {
             "title": item.title,
             "setting": report.setting,
-            "claims": [{**asdict(claim), "verdict": claim.verdict} for claim in report.claims],
+            "claims": [asdict(claim) for claim in report.claims],
             "missing": report.missing,
             "numbers": report.numbers,
         }

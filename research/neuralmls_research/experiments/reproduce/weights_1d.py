@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.drawing import draw_weights, plots
 from neuralmls_research.experiments.reproduce.lab import Lab
 from neuralmls_research.experiments.reproduce.line import AFTER, BEFORE, SETTING, X, functions, peaks, weights_on_line
@@ -27,6 +28,11 @@ def run(lab: Lab) -> Report:
     most = {kind: max(map(peaks, np.hstack([before[kind], after[kind]]).T)) for kind in before}
     plateau = {kind: float(np.mean([(w[kind].max(axis=1) > 0.9).mean() for w in (before, after)])) for kind in before}
     change = {kind: float(np.abs(after[kind] - before[kind])[far].max()) for kind in before}
+    smooth = verdicts.together(
+        verdicts.below(2, [most["neural"]]),
+        verdicts.more("the share above 0.9", [plateau["neural"]], plateau["classic"]),
+    )
+    fits = verdicts.less("the change of neural weights", [change["neural"]], change["classic"])
     return Report(
         SETTING.format(width=lab.width),
         pictures=[
@@ -40,17 +46,24 @@ def run(lab: Lab) -> Report:
         ],
         claims=[
             Claim(
-                "Neural weights are piecewise smooth: each control point rules one piece, with a smooth border.",
-                f"A neural weight has at most {most['neural']} peak, a classic one up to {most['classic']}; one "
+                paper="Neural weights are piecewise smooth: each control point rules one piece, with a smooth border.",
+                measure="Peaks of a weight; share of the line where one control point has over 0.9.",
+                rule=smooth.rule,
+                measured=f"A neural weight has at most {most['neural']} peak, a classic one up to "
+                f"{most['classic']}; one "
                 f"control point has over 0.9 of the weight on {plateau['neural']:.0%} of the line, with classic "
                 f"weights on {plateau['classic']:.0%}.",
-                most["neural"] == 1 < most["classic"] and plateau["neural"] > plateau["classic"],
+                verdict=smooth.verdict,
+                reader="Each control point rules one piece of the line.",
             ),
             Claim(
-                "Neural weights fit themselves to where the control points are: a move changes its surroundings.",
-                f"Left of the second control point the move of the fourth changes neural weights by at most "
+                paper="Neural weights fit themselves to where the control points are: a move changes its surroundings.",
+                measure="The largest change of a weight far from the control point that moves.",
+                rule=fits.rule,
+                measured=f"Left of the second control point the move of the fourth changes neural weights by at most "
                 f"{change['neural']:.3f}, classic ones by {change['classic']:.3f}.",
-                change["neural"] < change["classic"],
+                verdict=fits.verdict,
+                reader="A move is felt nearby.",
             ),
         ],
         numbers={"most_peaks": most, "share_above_0.9": plateau, "far_change": change},
