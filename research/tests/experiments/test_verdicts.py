@@ -95,6 +95,7 @@ def test_parts_of_a_claim_that_differ_make_it_partly_reproduced():
     assert verdicts.together(good, good).verdict == REPRODUCED
     assert verdicts.together(good, bad).verdict == PARTLY
     assert verdicts.together(bad, bad).verdict == CONTRADICTED
+    assert verdicts.together(good, verdicts.untestable("people")).verdict == Verdict.UNTESTABLE
 
 
 def test_what_nothing_can_test_has_no_verdict_and_says_what_it_needs():

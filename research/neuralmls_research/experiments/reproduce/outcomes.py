@@ -70,8 +70,8 @@ def rivals(lab: Lab, subject: Subject) -> dict[str, Method]:
     """
     choice = {
         f"{label}{SEED}{seed}": methods.neural(steps=STEPS, width=width, seed=seed)
-        for label, width, seeds in ((NEURAL_LABEL, lab.width, lab.seeds), (NARROW_LABEL, narrow(lab), lab.seeds[:1]))
-        for seed in seeds
+        for label, width in ((NEURAL_LABEL, lab.width), (NARROW_LABEL, narrow(lab)))
+        for seed in lab.seeds
     }
     choice |= {CLASSIC_LABEL: methods.classic(alpha=0.5), STEEPER_LABEL: methods.classic(alpha=1.0)}
     choice["ARAP"] = methods.METHODS["arap"]

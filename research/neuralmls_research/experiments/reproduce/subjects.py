@@ -134,6 +134,13 @@ def airplane(lab: Lab) -> Subject:
     return _shapenet(lab, "airplane", "ShapeNetPlane1", "default") or _sample("airplane")
 
 
+def chairs(lab: Lab) -> list[Subject]:
+    """All chairs and displacements that the paper's authors published; else our sample."""
+    study = [(folder, f"user_study_{i}") for folder in ("ShapeNetChair1", "ShapeNetChair3") for i in (1, 2, 3)]
+    found = [_shapenet(lab, "chair", folder, case) for folder, case in (*study, ("chair2", "default"))]
+    return [subject for subject in found if subject is not None] or [_sample("chair")]
+
+
 def many(lab: Lab) -> list[Subject]:
     """All shapes and displacements of the paper that the data has, and the organic shape; else all that are ours."""
     found = [
@@ -186,15 +193,20 @@ def car(lab: Lab) -> Subject:
 
 def organic(lab: Lab) -> Subject:
     """The armadillo, made coarser as in the paper, else a creature of ours: both are closed manifolds."""
+    return armadillo(lab, 900 if lab.quick else 8_650) or _creature(3 if lab.quick else 5)
+
+
+def armadillo(lab: Lab, vertices: int) -> Subject | None:
+    """The armadillo with control points of ours, made coarser to about as many vertices; None where it is not here."""
     import pyvista
 
     path = lab.find("organic/armadillo.obj")
     if path is None:
-        return _creature(3 if lab.quick else 5)
+        return None
     shape = read(path)
     assert shape.faces is not None
     mesh = pyvista.PolyData(shape.positions, np.insert(shape.faces.astype(np.int64), 0, 3, axis=1).ravel())
-    mesh = mesh.decimate(0.98 if lab.quick else 0.8)
+    mesh = mesh.decimate(1 - vertices / len(shape.positions))
     places, offsets = (np.array(column) for column in zip(*ARMADILLO.values(), strict=True))
     points = ControlPoints(places, places + offsets, list(ARMADILLO))
     x, faces = np.asarray(mesh.points, dtype=np.float64), mesh.faces.reshape(-1, 4)[:, 1:].astype(np.int64)

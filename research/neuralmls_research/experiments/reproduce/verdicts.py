@@ -152,9 +152,12 @@ def no_value(what: str, found: Sequence[float]) -> Ruling:
 
 
 def together(*rulings: Ruling) -> Ruling:
-    """Several rules for one claim: all must hold; where some do, it is reproduced in part."""
+    """Several rules for one claim: all must hold; where some do it is reproduced in part, where one cannot be tested not."""
     found = {ruling.verdict for ruling in rulings}
-    verdict = found.pop() if len(found) == 1 else Verdict.PARTLY
+    if Verdict.UNTESTABLE in found:
+        verdict = Verdict.UNTESTABLE
+    else:
+        verdict = found.pop() if len(found) == 1 else Verdict.PARTLY
     parts = " ".join(f"({number}) {ruling.rule}" for number, ruling in enumerate(rulings, 1))
     return Ruling(f"{parts} Where these differ: partly.", verdict)
 
