@@ -152,12 +152,11 @@ def no_value(what: str, found: Sequence[float]) -> Ruling:
 
 
 def together(*rulings: Ruling) -> Ruling:
-    """Several rules for one claim: all must hold; where some do it is reproduced in part, where one cannot be tested not."""
+    """Several rules for one claim: it is partly reproduced where they differ, untestable where one of them is."""
     found = {ruling.verdict for ruling in rulings}
-    if Verdict.UNTESTABLE in found:
-        verdict = Verdict.UNTESTABLE
-    else:
-        verdict = found.pop() if len(found) == 1 else Verdict.PARTLY
+    verdict = Verdict.PARTLY
+    if len(found) == 1 or Verdict.UNTESTABLE in found:
+        verdict = Verdict.UNTESTABLE if Verdict.UNTESTABLE in found else found.pop()
     parts = " ".join(f"({number}) {ruling.rule}" for number, ruling in enumerate(rulings, 1))
     return Ruling(f"{parts} Where these differ: partly.", verdict)
 
