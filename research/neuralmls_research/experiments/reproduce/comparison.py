@@ -106,7 +106,7 @@ def _show(lab: Lab, compared: Compared, report: Report) -> None:
 
 
 def _less(every: Sequence[Compared]) -> Claim:
-    ruling = verdicts.better_in_all([pair for compared in every for pair in compared.pairs("curvature_median")])
+    ruling = verdicts.better_than_each([compared.pairs("curvature_median") for compared in every])
     return Claim(
         paper="Figure 4: on all four kinds of shapes neural weights distort less than the other methods.",
         measure="The figure prints no number: median change of mean curvature, as means hang on rounding (Table 1).",
@@ -131,7 +131,7 @@ def _count(every: Sequence[Compared], measure: str) -> str:
 
 
 def _closer(every: Sequence[Compared]) -> Claim:
-    ruling = verdicts.better_in_all([pair for compared in every for pair in compared.pairs("error")])
+    ruling = verdicts.better_than_each([compared.pairs("error") for compared in every])
     return Claim(
         paper="Figure 4: with neural weights control points come closer to their targets than with the other methods.",
         measure="Mean distance of the control points' nearest vertices from the targets.",

@@ -70,7 +70,7 @@ def run(lab: Lab) -> Report:
 
 
 def _distortion(category: str, cases: Sequence[Case]) -> Claim:
-    ruling = verdicts.better_in_all([pair for case in cases for pair in case.pairs("laplacian")], least=LEAST)
+    ruling = verdicts.better_than_each([case.pairs("laplacian") for case in cases], LEAST)
     classic = [case.against("laplacian", CLASSIC_LABEL) for case in cases]
     ratios = [fmean(neural) / other for neural, other in classic] or [1.0]
     return Claim(
@@ -90,9 +90,7 @@ def _distortion(category: str, cases: Sequence[Case]) -> Claim:
 
 
 def _closeness(cases: Sequence[Case]) -> Claim:
-    ruling = verdicts.better_in_all(
-        [pair for case in cases for pair in case.pairs("error")], least=len(CATEGORIES) * LEAST
-    )
+    ruling = verdicts.better_than_each([case.pairs("error") for case in cases], len(CATEGORIES) * LEAST)
     return Claim(
         paper="Figure 6: with neural weights control points come closer to their targets than with the other methods.",
         measure="Mean distance of the control points' nearest vertices from the targets, the figure's axis.",
@@ -173,8 +171,8 @@ def _study() -> Claim:
     """The user study, which needs people: its deformations are those of the figure, of three shapes a category."""
     ruling = verdicts.untestable("it needs people who answer")
     return Claim(
-        paper="Table 2, the user study: of three results (neural weights, classic ones, KeypointDeformer) for each of 27 "
-        "deformations of chairs, airplanes and cars, people find that of neural weights the most realistic.",
+        paper="Table 2, the user study: of three results (neural weights, classic ones, KeypointDeformer) for each of "
+        "27 deformations of chairs, airplanes and cars, people find that of neural weights the most realistic.",
         measure="Share of the answers.",
         rule=ruling.rule,
         measured="Nothing: neuralmls study builds such a study and evaluates its answers.",

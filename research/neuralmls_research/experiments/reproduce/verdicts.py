@@ -12,11 +12,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from statistics import fmean
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from neuralmls_research.experiments.reproduce.report import Verdict
 
-Seeds = Sequence[float]  # a value for each seed; one where nothing is drawn by lot
+Seeds: TypeAlias = Sequence[float]  # a value for each seed; one where nothing is drawn by lot
+Pair: TypeAlias = tuple[Seeds, float]  # neural weights, and another method
 
 
 class Ruling(NamedTuple):
@@ -45,22 +46,26 @@ def in_all(what: str, holds: Sequence[bool], least: int = 1) -> Ruling:
     return _counted(f"Reproduced if {what} in all cases; partly in some; contradicted in none.", holds, least)
 
 
-def better_in_all(pairs: Sequence[tuple[Seeds, float]], rival: str = "", least: int = 1) -> Ruling:
-    """Whether neural weights have less than other methods in all comparisons: (neural, other) of each.
-
-    `rival` is the one other method; without it, each of the paper's that applies to a deformation is compared with.
-    """
-    compared = (
-        f"A deformation counts if neural weights have less than {rival}"
-        if rival
-        else "Each deformation is compared with each other method of the paper that applies to it; a comparison counts "
-        "if neural weights have less"
-    )
+def better_in_all(pairs: Sequence[Pair], rival: str, least: int = 1) -> Ruling:
+    """Whether neural weights have less than one other method in all deformations, a pair each."""
     return _counted(
-        f"{compared}, with every seed. Reproduced if all count; partly if some do; contradicted if none does.",
+        f"A deformation counts if neural weights have less than {rival}, with every seed. Reproduced if all count; "
+        "partly if some do; contradicted if none does.",
         [max(neural) < other for neural, other in pairs],
         least,
     )
+
+
+def better_than_each(deformations: Sequence[Sequence[Pair]], least: int = 1) -> Ruling:
+    """Whether neural weights have less than every other method that applies: of each deformation, a pair for each."""
+    rule = (
+        "Each deformation is compared with each other method of the paper that applies to it; a comparison counts if "
+        "neural weights have less, with every seed. Reproduced if all count; partly if some do; contradicted if none "
+        "does."
+    )
+    if len(deformations) < least:
+        return _counted(rule, [False] * len(deformations), least)
+    return _counted(rule, [max(neural) < other for pairs in deformations for neural, other in pairs])
 
 
 def in_half(what: str, holds: Sequence[bool]) -> Ruling:
