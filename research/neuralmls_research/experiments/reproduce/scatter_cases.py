@@ -29,16 +29,21 @@ MEASURED = ("laplacian", "error", "curvature", "curvature_median", "dirichlet")
 
 @dataclass(frozen=True)
 class Case:
-    """A deformation: its category, its label, and by measure and method a value for each seed."""
+    """A deformation: its category, its label, and by measure and method a value for each seed.
+
+    `ours` where the shape stands in for one of the paper's.
+    """
 
     category: str
     label: str
     values: dict[str, dict[str, list[float]]]
+    ours: bool = False
 
     @classmethod
     def of(cls, subject: Subject, found: Sequence[Outcome]) -> Case:
         """What methods made of a subject."""
-        return cls(subject.name, subject.label, {measure: seeds_of(found, measure) for measure in MEASURED})
+        values = {measure: seeds_of(found, measure) for measure in MEASURED}
+        return cls(subject.name, subject.label, values, subject.ours)
 
     def of_others(self, measure: str) -> dict[str, float]:
         """The paper's other methods, where they apply."""
