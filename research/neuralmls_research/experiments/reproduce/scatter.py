@@ -88,7 +88,7 @@ def _distortion(category: str, cases: Sequence[Case]) -> Claim:
             ruling,
             "On this axis neural weights distort less in this category.",
             "It depends on the displacement, and on the method compared with: look at the rows.",
-            "On this axis every other method distorts less, in every deformation of the category.",
+            "On this axis neural weights distort less than another method in no deformation of the category.",
         ),
     )
 
