@@ -94,8 +94,8 @@ def _changes(cases: Sequence[Case]) -> str:
     classic = [case.against("laplacian", CLASSIC_LABEL) for case in cases]
     ratios = [fmean(neural) / other for neural, other in classic]
     return (
-        f"Less than {_against('laplacian', cases)}; neural / classic {spoken(ratios, '{:.2f}')}. Beside it, mean change "
-        f"of mean curvature: less than {_against('curvature', cases)}."
+        f"Less than {_against('laplacian', cases)}; neural / classic {spoken(ratios, '{:.2f}')}. Beside it, mean "
+        f"change of mean curvature: less than {_against('curvature', cases)}."
         + (" The shapes are no shapes of the paper, but stand in." if any(case.ours for case in cases) else "")
     )
 
