@@ -14,7 +14,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
@@ -134,7 +133,13 @@ def kpd(path: str | os.PathLike[str], title: str = baselines.TITLES["kpd"]) -> M
     """
     from neuralmls_research.baselines.kpd import KeypointDeformer
 
-    return of_shapes(title, partial(baselines.get("kpd"), network=KeypointDeformer.read(path)))
+    network = KeypointDeformer.read(path)
+
+    def bind(shape: Geometry, p: ArrayLike) -> Bound:
+        bound = network.bind(shape)
+        return Bound(lambda q: baselines.get("kpd")(shape, p, q, network=bound))
+
+    return Method(title, bind)
 
 
 def _of_weights(

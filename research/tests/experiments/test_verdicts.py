@@ -31,6 +31,17 @@ def test_a_category_counts_in_all_in_some_or_in_none(holds, verdict):
     assert verdicts.in_all("it holds", holds).verdict == verdict
 
 
+def test_a_category_without_a_case_has_no_verdict():
+    assert verdicts.in_all("it holds", []).verdict == Verdict.UNTESTABLE
+    assert verdicts.in_all("it holds", [True, True], least=3).verdict == Verdict.UNTESTABLE
+    assert verdicts.better_in_all([([1.0], 2.0)], "classic", least=2).verdict == Verdict.UNTESTABLE
+
+
+@pytest.mark.parametrize(("count", "verdict"), [(4, REPRODUCED), (2, REPRODUCED), (1, PARTLY), (0, CONTRADICTED)])
+def test_of_unknown_inputs_half_of_the_settings_must_show_it(count, verdict):
+    assert verdicts.in_half("it shows", [True] * count + [False] * (4 - count)).verdict == verdict
+
+
 @pytest.mark.parametrize(
     ("pairs", "verdict"),
     [
@@ -40,7 +51,9 @@ def test_a_category_counts_in_all_in_some_or_in_none(holds, verdict):
     ],
 )
 def test_every_seed_must_be_better_for_a_case_to_count(pairs, verdict):
-    assert verdicts.better_in_all("airplanes", pairs).verdict == verdict
+    assert verdicts.better_in_all(pairs, "classic").verdict == verdict
+    assert verdicts.better_than_each([pairs]).verdict == verdict
+    assert verdicts.better_than_each([pairs], least=2).verdict == Verdict.UNTESTABLE  # two comparisons, one deformation
 
 
 @pytest.mark.parametrize(
@@ -84,6 +97,7 @@ def test_parts_of_a_claim_that_differ_make_it_partly_reproduced():
     assert verdicts.together(good, good).verdict == REPRODUCED
     assert verdicts.together(good, bad).verdict == PARTLY
     assert verdicts.together(bad, bad).verdict == CONTRADICTED
+    assert verdicts.together(good, verdicts.untestable("people")).verdict == Verdict.UNTESTABLE
 
 
 def test_what_nothing_can_test_has_no_verdict_and_says_what_it_needs():

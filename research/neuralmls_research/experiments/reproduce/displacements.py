@@ -58,7 +58,6 @@ def run(lab: Lab) -> Report:
     frame = float(np.median(seconds))
     faster = verdicts.less("a displacement's time", [frame], trained, "the training's")
     unchanged = verdicts.below(1e-4, [difference])
-    people = verdicts.untestable("it needs people")
     return Report(
         f"{subject.label}, {len(subject.positions):,} vertices; one network of width {lab.width}, 48 steps, rigid.",
         pictures=[
@@ -84,14 +83,6 @@ def run(lab: Lab) -> Report:
                 f"than {difference:.1g} of half of the longest side.",
                 verdict=unchanged.verdict,
                 reader="Weights can be normalised without a change.",
-            ),
-            Claim(
-                paper="The user study: people prefer NeuralMLS (Table 2).",
-                measure="The share of answers.",
-                rule=people.rule,
-                measured="It needs people: neuralmls study builds the study and evaluates the answers.",
-                verdict=people.verdict,
-                reader="Nothing is known of it from here.",
             ),
         ],
         missing=subject.missing,

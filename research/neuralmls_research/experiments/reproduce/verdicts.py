@@ -12,11 +12,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from statistics import fmean
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from neuralmls_research.experiments.reproduce.report import Verdict
 
-Seeds = Sequence[float]  # a value for each seed; one where nothing is drawn by lot
+Seeds: TypeAlias = Sequence[float]  # a value for each seed; one where nothing is drawn by lot
+Pair: TypeAlias = tuple[Seeds, float]  # neural weights, and another method
 
 
 class Ruling(NamedTuple):
@@ -31,30 +32,50 @@ def order(values: Mapping[str, Seeds]) -> Ruling:
     groups = list(values.values())
     means = [fmean(group) for group in groups]
     spread = max(_spread(group) for group in groups)
-    first = means[0] < min(means[1:])
     apart = all(b - a > spread for a, b in pairwise(means))
+    beaten = means[0] - min(means[1:]) > spread
     return Ruling(
-        f"Reproduced if {' < '.join(values)}, each mean by more than the seeds spread (largest less smallest); partly "
-        f"if {next(iter(values))} has the least mean, but not by that much or with the others in another order; "
-        "contradicted if another has.",
-        Verdict.REPRODUCED if apart else Verdict.PARTLY if first else Verdict.CONTRADICTED,
+        f"Reproduced if {' < '.join(values)}, each mean by more than the seeds spread (largest less smallest); "
+        f"contradicted if another has a lower mean than {next(iter(values))} by more than that; partly otherwise.",
+        Verdict.REPRODUCED if apart else Verdict.CONTRADICTED if beaten else Verdict.PARTLY,
     )
 
 
-def in_all(what: str, holds: Sequence[bool]) -> Ruling:
-    """Whether something holds in all, in some or in none of the cases of a category."""
-    return Ruling(
-        f"Reproduced if {what} in all; partly in some; contradicted in none.",
-        _share(holds),
+def in_all(what: str, holds: Sequence[bool], least: int = 1) -> Ruling:
+    """Whether something holds in all, in some or in none of the cases of a category; `least` must be there."""
+    return _counted(f"Reproduced if {what} in all cases; partly in some; contradicted in none.", holds, least)
+
+
+def better_in_all(pairs: Sequence[Pair], rival: str, least: int = 1) -> Ruling:
+    """Whether neural weights have less than one other method in all deformations, a pair each."""
+    return _counted(
+        f"A deformation counts if neural weights have less than {rival}, with every seed. Reproduced if all count; "
+        "partly if some do; contradicted if none does.",
+        [max(neural) < other for neural, other in pairs],
+        least,
     )
 
 
-def better_in_all(cases: str, pairs: Sequence[tuple[Seeds, float]]) -> Ruling:
-    """Whether neural weights, with every seed, have less than a rival in all cases: (neural, rival) of each."""
-    return in_all(
-        f"neural weights, with every seed, have less than the rival: {cases}",
-        [max(neural) < rival for neural, rival in pairs],
+def better_than_each(deformations: Sequence[Sequence[Pair]], least: int = 1) -> Ruling:
+    """Whether neural weights have less than every other method that applies: of each deformation, a pair for each."""
+    rule = (
+        "Each deformation is compared with each other method of the paper that applies to it; a comparison counts if "
+        "neural weights have less, with every seed. Reproduced if all count; partly if some do; contradicted if none "
+        "does."
     )
+    if len(deformations) < least:
+        return _counted(rule, [False] * len(deformations), least)
+    return _counted(rule, [max(neural) < other for pairs in deformations for neural, other in pairs])
+
+
+def in_half(what: str, holds: Sequence[bool]) -> Ruling:
+    """Whether something is seen in half of the settings of a grid, in some, or in none: for inputs that are unknown."""
+    ruling = _counted(
+        f"Reproduced if {what} in half of the settings or more; partly in some; contradicted in none.", holds
+    )
+    if ruling.verdict == Verdict.PARTLY and 2 * sum(holds) >= len(holds):
+        return Ruling(ruling.rule, Verdict.REPRODUCED)
+    return ruling
 
 
 def below(bound: float, values: Seeds) -> Ruling:
@@ -136,16 +157,31 @@ def no_value(what: str, found: Sequence[float]) -> Ruling:
 
 
 def together(*rulings: Ruling) -> Ruling:
-    """Several rules for one claim: all must hold; where some do, it is reproduced in part."""
+    """Several rules for one claim: it is partly reproduced where they differ, untestable where one of them is."""
     found = {ruling.verdict for ruling in rulings}
-    verdict = found.pop() if len(found) == 1 else Verdict.PARTLY
+    verdict = Verdict.PARTLY
+    if len(found) == 1 or Verdict.UNTESTABLE in found:
+        verdict = Verdict.UNTESTABLE if Verdict.UNTESTABLE in found else found.pop()
     parts = " ".join(f"({number}) {ruling.rule}" for number, ruling in enumerate(rulings, 1))
     return Ruling(f"{parts} Where these differ: partly.", verdict)
 
 
 def untestable(need: str) -> Ruling:
-    """A claim that nothing here can test."""
+    """A claim that nothing here can test, and what that would need."""
     return Ruling(f"None can be applied: {need}.", Verdict.UNTESTABLE)
+
+
+def conclusion(ruling: Ruling, reproduced: str, partly: str, contradicted: str) -> str:
+    """What a reader should conclude, whatever the verdict turns out to be."""
+    said = {Verdict.REPRODUCED: reproduced, Verdict.PARTLY: partly, Verdict.CONTRADICTED: contradicted}
+    return said.get(ruling.verdict, "Nothing can be concluded from this run.")
+
+
+def _counted(rule: str, holds: Sequence[bool], least: int = 1) -> Ruling:
+    """All, some or none of cases; nothing to say where there are fewer than `least`."""
+    if len(holds) < least:
+        return untestable(f"it takes {least} or more cases, and {len(holds)} are here")
+    return Ruling(f"{rule} It takes {least} cases or more." if least > 1 else rule, _share(holds))
 
 
 def _share(holds: Sequence[bool]) -> Verdict:
