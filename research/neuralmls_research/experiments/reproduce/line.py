@@ -17,7 +17,7 @@ BEFORE = np.array([[-4.3], [-2.6], [-1.1], [1.3], [2.1], [4.2]])
 MOVED = 3
 AFTER = BEFORE - np.eye(6)[:, MOVED : MOVED + 1]
 TEMPERATURES = (0.2, 1.0, 5.0)
-# The published script's exponent is 1, but on the line it is one of d, where in space it is one of d^2: 1/(d + epsilon).
+# The published script's exponent is 1, but on the line it is one of d, in space one of d^2: here 1/(d + epsilon).
 ALPHA, EPSILON = 0.5, 1e-6
 _RAW = [[-1.0], [1.0]]  # the published script does not normalise the line
 SETTING = (
