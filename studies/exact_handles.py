@@ -26,7 +26,11 @@ from neuralmls_research.metrics import measure
 Array = NDArray[np.float64]
 
 SHAPES = ("ShapeNetPlane1", "ShapeNetPlane2", "ShapeNetChair1", "ShapeNetChair3", "chair2")
-PAPER, OURS, PUBLISHED = "the paper: width 1024, 48 steps", "our default: each owns 0.9", "published code: width 128"
+PAPER, OURS, PUBLISHED = (
+    "the paper's width of 1024, the published code's 48 steps",
+    "our default: each owns 0.9",
+    "published code: width 128",
+)
 TRAININGS: dict[str, dict[str, int]] = {PAPER: {"steps": 48}, OURS: {}, PUBLISHED: {"steps": 48, "width": 128}}
 # Weights that own less and less: our training at higher temperatures, the published width trained for longer.
 OWNING: list[tuple[dict[str, int], float]] = [

@@ -14,14 +14,23 @@ from neuralmls.cli.plugin import Stages, console, options, outputs
 @click.command()
 @click.argument("items", nargs=-1, metavar="[ITEM]...")
 @options.output("The folder to write into.")
+@click.option(
+    "--seeds",
+    type=click.IntRange(min=1),
+    default=4,
+    show_default=True,
+    metavar="N",
+    help="Train every network N times, seeds 0 to N - 1: a verdict holds for all of them.",
+)
 @options.quiet
 @options.force
-def reproduce(*, items: tuple[str, ...], output: Path, quiet: bool, force: bool) -> None:
+def reproduce(*, items: tuple[str, ...], output: Path, seeds: int, quiet: bool, force: bool) -> None:
     """Draw the paper's figures and tables from own runs.
 
     \b
     fig1 fig2 square fig4 fig5 table1 fig6 fig7 fig8 fig9 fig10 training fourier
-    or all, as without an ITEM. Writes pictures, index.html and numbers.json.
+    or all, as without an ITEM. Writes pictures (PNG, SVG, PDF),
+    tables (CSV, LaTeX), index.html and numbers.json.
 
     The paper's own shapes are used where $NEURALMLS_DATA has them, ours otherwise.
     """
@@ -29,7 +38,7 @@ def reproduce(*, items: tuple[str, ...], output: Path, quiet: bool, force: bool)
     from neuralmls_research.experiments.reproduce.lab import Lab
     from neuralmls_research.experiments.reproduce.run import NUMBERS, PAGE
 
-    selected, lab = chosen(items or ("all",)), Lab.of(output)
+    selected, lab = chosen(items or ("all",)), Lab.of(output, tuple(range(seeds)))
     outputs.make_folder(output)
     for name in (PAGE, NUMBERS):
         outputs.check_output(output / name, force=force)

@@ -17,14 +17,16 @@ from PIL import Image
 
 from neuralmls.cli import main
 from neuralmls.errors import ArgumentError
-from neuralmls_research.experiments.reproduce import deformation_1d, subjects, table1, weights_1d
+from neuralmls_research.experiments.reproduce import deformation_1d, subjects, weights_1d
 from neuralmls_research.experiments.reproduce.items import ITEMS, NAMES, Item, chosen
 from neuralmls_research.experiments.reproduce.lab import Lab
 from neuralmls_research.experiments.reproduce.line import peaks
+from neuralmls_research.experiments.reproduce.outcomes import CLASSIC_LABEL, KPD_LABEL
 from neuralmls_research.experiments.reproduce.page import page
-from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report, Table
+from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report, Table, Verdict
 from neuralmls_research.experiments.reproduce.run import reproduce
 from neuralmls_research.experiments.reproduce.sharp_edges import angles, neighbours, single
+from neuralmls_research.experiments.reproduce.table1_airplane import of_airplane
 
 SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
 HALVES = np.array([[0, 1, 2], [0, 2, 3]])
@@ -34,7 +36,7 @@ HALVES = np.array([[0, 1, 2], [0, 2, 3]])
 def everything(tmp_path_factory: pytest.TempPathFactory, brief_training: None) -> tuple[Path, dict[Item, Report]]:
     """All items on coarse shapes of ours."""
     folder = tmp_path_factory.mktemp("reproduce")
-    return folder, reproduce(ITEMS, Lab(folder, quick=True))[1]
+    return folder, reproduce(ITEMS, Lab(folder, quick=True, seeds=(0, 1)))[1]
 
 
 def floats(value: object) -> Iterator[float]:
@@ -94,9 +96,10 @@ def test_what_is_not_in_the_paper_stands_beside_it_and_says_so(everything, name)
     item = chosen([name])[0]
     report = everything[1][item]
     rows = {row[0] for table in report.tables for row in table.rows}
-    beyond = {label for label in rows if "(ours)" in label}
+    columns = {title for table in report.tables for title in table.head}
+    beyond = {label for label in rows | columns if "(ours)" in label}
     assert beyond == {"neural, exact (ours)", "shape-aware (ours)", "shape-aware, exact (ours)"}
-    assert "classic MLS" in rows
+    assert CLASSIC_LABEL in rows | columns
     assert "marked (ours) is not in the paper" in report.setting
 
 
@@ -109,14 +112,13 @@ def test_without_the_papers_shapes_the_reports_say_so(everything):
 def test_a_claim_about_the_papers_own_airplane_has_no_verdict_without_it(everything):
     _, reports = everything
     (claim,) = (c for c in reports[chosen(["table1"])[0]].claims if "1764" in c.paper)
-    assert claim.holds is None
-    assert claim.verdict == "cannot be tested here"
+    assert claim.verdict == Verdict.UNTESTABLE
 
 
 def test_neural_weights_on_a_line_have_one_peak_each(tmp_path):
     report = weights_1d.run(Lab(tmp_path))
     assert report.numbers["most_peaks"]["neural"] == 1 < report.numbers["most_peaks"]["classic"]
-    assert all(claim.holds for claim in report.claims)
+    assert all(claim.verdict == Verdict.REPRODUCED for claim in report.claims)
 
 
 def test_the_neural_deformation_of_a_line_only_rises_where_its_targets_do(tmp_path):
@@ -126,11 +128,14 @@ def test_the_neural_deformation_of_a_line_only_rises_where_its_targets_do(tmp_pa
 
 
 def test_table_1_has_the_papers_order_for_every_seed(tmp_path, data, golden):
-    report = table1.run(Lab(tmp_path, data, golden))
-    single = report.numbers["single"]
-    assert max(single[f"neural, seed {seed}"] for seed in range(4)) < single["classic MLS"] < single["KeypointDeformer"]
-    assert single["KeypointDeformer"] == pytest.approx(554, abs=1)
-    assert all(0.88 <= ratio <= 0.96 for ratio in report.numbers["ratios_of_the_seeds"])
+    report = Report("")
+    of_airplane(Lab(tmp_path, data, golden), report)
+    numbers = report.numbers["airplane"]
+    (classic,), (kpd,) = (numbers["single"][label] for label in (CLASSIC_LABEL, KPD_LABEL))
+    assert len(numbers["single"]["neural"]) == 4
+    assert max(numbers["single"]["neural"]) < classic < kpd
+    assert kpd == pytest.approx(554, abs=1)
+    assert all(0.88 <= ratio <= 0.96 for ratio in numbers["ratios_of_the_seeds"])
     assert {claim.paper[:7]: claim.verdict for claim in report.claims}["Table 1"] == "reproduced"
 
 
@@ -155,15 +160,36 @@ def test_the_page_escapes_what_it_is_given():
     report = Report(
         "a < b",
         [Picture("a.png", 'x & "y"')],
-        [Table("T > 1", ["<m>"], [["&"]])],
-        [Claim("1 < 2", "<b>", True), Claim("3 < 2", "no", False)],
+        [Table("t", "T > 1", ["<m>"], [["&"]])],
+        [
+            Claim("1 < 2", "<i>", "<u>", "<b>", Verdict.REPRODUCED, "<s>"),
+            Claim("3 < 2", "", "", "", Verdict.CONTRADICTED, ""),
+            Claim("ours", "", "", "", Verdict.CONTRADICTED, "", ours=True),
+        ],
         missing=["<all>"],
     )
     html = page({ITEMS[0]: report}, "0.0.0")
     assert "<m>" not in html
     assert "<all>" not in html
-    for text in ("A &lt; b", "x &amp; &quot;y&quot;", "&lt;m&gt;", "&lt;b&gt;", "1 reproduced, 1 not reproduced"):
+    for text in ("A &lt; b", "x &amp; &quot;y&quot;", "&lt;m&gt;", "&lt;b&gt;", "&lt;i&gt;", "&lt;u&gt;", "&lt;s&gt;"):
         assert text in html
+
+
+def test_checks_of_our_own_have_no_part_in_the_papers_verdicts():
+    kinds = [(Verdict.REPRODUCED, False), (Verdict.CONTRADICTED, False), (Verdict.CONTRADICTED, True)]
+    html = page({ITEMS[0]: Report("s", claims=[Claim("p", "m", "r", "m", v, "c", ours) for v, ours in kinds])}, "0")
+    assert "1 reproduced, 0 partly reproduced, 1 contradicted, 0 cannot be tested here" in html
+    assert html.count("Our own check") == 1
+
+
+def test_every_claim_has_a_rule_and_a_conclusion_and_every_table_its_own_name(everything):
+    reports = everything[1].values()
+    for claim in (claim for report in reports for claim in report.claims):
+        assert all((claim.paper, claim.measure, claim.rule, claim.measured, claim.reader)), claim
+        assert isinstance(claim.verdict, Verdict)
+    names = [table.name for report in reports for table in report.tables]
+    assert len(set(names)) == len(names)
+    assert all(re.fullmatch(r"[a-z0-9-]+", name) for name in names)
 
 
 def test_cutting_keeps_the_surface_and_shortens_its_edges():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from neuralmls.plugin import write_atomically
+from neuralmls_research.experiments.reproduce import formats
 from neuralmls_research.experiments.reproduce.lab import Lab
 from neuralmls_research.experiments.reproduce.subjects import Subject
 
@@ -33,12 +32,13 @@ STYLE: Any = {
     "axes.axisbelow": True,
     "legend.frameon": False,
     "lines.linewidth": 1.8,
+    **formats.VECTORS,
 }
 
 
 @contextmanager
 def plots(lab: Lab, file: str, rows: int, columns: int, size: tuple[float, float], **options: Any) -> Iterator[Any]:
-    """Give the axes of a figure of `size` inches, (rows, columns), and write it as a PNG when the block ends.
+    """Give the axes of a figure of `size` inches, (rows, columns), and write it in all formats when the block ends.
 
     Raises
     ------
@@ -51,19 +51,24 @@ def plots(lab: Lab, file: str, rows: int, columns: int, size: tuple[float, float
     with rc_context(STYLE):
         figure = Figure(figsize=size, layout="constrained")
         yield figure.subplots(rows, columns, squeeze=False, **options)
-        out = io.BytesIO()
-        figure.savefig(out, format="png", dpi=60 if lab.quick else 150)
-    write_atomically(lab.folder / file, out.getvalue())
+        formats.write_plot(figure, lab.folder / file, 60 if lab.quick else 150)
 
 
-def draw_weights(axes: Axes, x: Array, w: Array, p: Array, title: str) -> None:
-    """Draw the weights (n, m) of control points p (m, 1) over x (n, 1), each with its point below."""
+def draw_weights(
+    axes: Axes, x: Array, w: Array, p: Array, title: str, top: float = 1.05, before: Array | None = None
+) -> None:
+    """Draw the weights (n, m) of control points p (m, 1) over x (n, 1) up to `top`, each with its point below.
+
+    What they were `before`, (n, m), is drawn as thin broken lines behind.
+    """
+    if before is not None:
+        axes.plot(x[:, 0], before, color="#777777", linewidth=0.8, linestyle="--")
     for i in range(w.shape[1]):
         colour = COLOURS[i % len(COLOURS)]
         axes.plot(x[:, 0], w[:, i], color=colour)
-        axes.plot(p[i, 0], -0.06, "o", color=colour, clip_on=False)
+        axes.plot(p[i, 0], -0.06 * top, "o", color=colour, clip_on=False)
     axes.set_title(title)
-    axes.set_ylim(-0.1, 1.05)
+    axes.set_ylim(-0.1 * top, top)
     axes.set_xlim(x[0, 0], x[-1, 0])
 
 
@@ -95,3 +100,4 @@ def draw_shapes(
         azimuth=azimuth,
         elevation=elevation,
     )
+    formats.embed(lab.folder / file)

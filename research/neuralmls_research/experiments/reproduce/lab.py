@@ -8,6 +8,10 @@ from pathlib import Path
 
 from neuralmls.errors import FileError
 
+# The published code's; the paper gives no number of steps and no rate.
+STEPS = 48
+SEEDS = (0, 1, 2, 3)
+
 
 @dataclass(frozen=True)
 class Lab:
@@ -21,15 +25,18 @@ class Lab:
         The test data and the published weights of KeypointDeformer, where this machine has them.
     quick : bool
         Whether to run on coarse shapes with small networks: for tests of the code, not of the paper.
+    seeds : tuple of int
+        The networks that everything trained is trained as: a verdict holds for all of them. Pictures show the first.
     """
 
     folder: Path
     data: Path | None = None
     golden: Path | None = None
     quick: bool = False
+    seeds: tuple[int, ...] = SEEDS
 
     @classmethod
-    def of(cls, folder: Path) -> Lab:
+    def of(cls, folder: Path, seeds: tuple[int, ...] = SEEDS) -> Lab:
         """The lab of `$NEURALMLS_DATA` and `$NEURALMLS_GOLDEN`, or of the folder `golden` beside the data.
 
         Raises
@@ -40,7 +47,7 @@ class Lab:
         data, golden = _folder("NEURALMLS_DATA"), _folder("NEURALMLS_GOLDEN")
         if data is not None and golden is None and (data.resolve().parent / "golden").is_dir():
             golden = data.resolve().parent / "golden"
-        return cls(folder, data, golden)
+        return cls(folder, data, golden, seeds=seeds)
 
     def find(self, name: str) -> Path | None:
         """A file of the data folder, or None where it is not there."""
@@ -54,7 +61,7 @@ class Lab:
 
     @property
     def width(self) -> int:
-        """Neurons a hidden layer: the paper's."""
+        """Neurons in a hidden layer: the paper's."""
         return 64 if self.quick else 1024
 
 
@@ -64,3 +71,17 @@ def _folder(variable: str) -> Path | None:
     if name and not Path(name).is_dir():
         raise FileError(f"${variable}: there is no folder '{name}'")
     return Path(name) if name else None
+
+
+def classic_title(alpha: float) -> str:
+    """What classic weights 1/d^(2 alpha) are called wherever they are drawn.
+
+    Examples
+    --------
+    >>> classic_title(0.5)
+    'classic, alpha 0.5 (1/d)'
+    >>> classic_title(1.0)
+    'classic, alpha 1 (1/d^2)'
+    """
+    power = "1/d" if alpha == 0.5 else f"1/d^{2 * alpha:g}"
+    return f"classic, alpha {alpha:g} ({power})"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,14 +12,19 @@ from neuralmls import Deformer, Weights
 from neuralmls.errors import NotApplicable
 from neuralmls.plugin import Transform
 from neuralmls_research.experiments import methods
-from neuralmls_research.experiments.methods import OURS, Method
+from neuralmls_research.experiments.methods import OURS, Bound, Method
 from neuralmls_research.experiments.reproduce.drawing import CLASSIC, NEURAL, plots
-from neuralmls_research.experiments.reproduce.lab import Lab
+from neuralmls_research.experiments.reproduce.lab import Lab, classic_title
 from neuralmls_research.experiments.reproduce.report import Table
 from neuralmls_research.experiments.reproduce.subjects import Subject
-from neuralmls_research.metrics import Measures, measure
+from neuralmls_research.metrics import curvature_change, flipped_triangles, handle_errors, strain
 
 Array = NDArray[np.float64]
+
+STEPS = 48  # of the published scripts: the paper says nothing of steps and rate
+NEURAL_LABEL, NARROW_LABEL, KPD_LABEL = "neural", "neural, narrow network", "KeypointDeformer"
+CLASSIC_LABEL, STEEPER_LABEL = classic_title(0.5), classic_title(1.0)  # the published comparison's, and its study's
+SEED = ", seed "  # between the label of a network's outcome and its seed
 
 BEYOND = (
     f"What is marked {OURS} is not in the paper: handles that arrive (exact), weights taught by random walks over the "
@@ -39,29 +44,11 @@ class Setting:
 
 @dataclass(frozen=True)
 class Outcome:
-    """A deformed shape and its measures."""
+    """A deformed shape and its measures by name: `COLUMNS` says which."""
 
     label: str
     positions: Array
-    measures: Measures
-
-    @property
-    def numbers(self) -> dict[str, float]:
-        """The measures of a surface, by name."""
-        m = self.measures
-        assert m.curvature is not None
-        assert m.laplacian is not None
-        assert m.strain is not None
-        assert m.flips is not None
-        found = {
-            "error": m.at_vertices,
-            "curvature": m.curvature.mean,
-            "curvature_median": m.curvature.median,
-            "laplacian": m.laplacian.mean,
-            "dirichlet": m.strain.dirichlet_mean,
-            "flipped": m.flips.count,
-        }
-        return found if m.at_points is None else {**found, "error_at_points": m.at_points}
+    numbers: dict[str, float]
 
 
 # What a table can show: a title, and how the number is printed.
@@ -70,37 +57,58 @@ COLUMNS = {
     "error_at_points": ("error at control points", "{:.4f}"),
     "curvature": ("|Δ curvature|, mean", "{:.4g}"),
     "curvature_median": ("|Δ curvature|, median", "{:.3g}"),
-    "laplacian": ("|Δ Laplacian|, mean", "{:.3g}"),
+    "laplacian": ("|Δ Laplacian|, mean", "{:.4f}"),
     "dirichlet": ("Dirichlet energy (4: none)", "{:.3f}"),
     "flipped": ("flipped triangles", "{:.0f}"),
 }
 
 
 def rivals(lab: Lab, subject: Subject) -> dict[str, Method]:
-    """The methods of the paper's comparison, neural and classic first; KeypointDeformer where it knows the shape."""
-    choice = {"neural": methods.neural(steps=48, width=lab.width), "classic MLS": methods.classic()}
+    """The methods of the paper's comparison: neural with each seed, classic, ARAP; KeypointDeformer with its weights.
+
+    Beside them what the published code would use: a narrower network, and in its study a steeper exponent.
+    """
+    choice = {
+        f"{label}{SEED}{seed}": methods.neural(steps=STEPS, width=width, seed=seed)
+        for label, width in ((NEURAL_LABEL, lab.width), (NARROW_LABEL, narrow(lab)))
+        for seed in lab.seeds
+    }
+    choice |= {CLASSIC_LABEL: methods.classic(alpha=0.5), STEEPER_LABEL: methods.classic(alpha=1.0)}
     choice["ARAP"] = methods.METHODS["arap"]
-    weights = None if subject.ours or subject.name != "airplane" else lab.keypoint_weights("airplane")
+    weights = lab.keypoint_weights(subject.name)
     if weights is not None:
-        choice["KeypointDeformer"] = methods.kpd(weights)
+        choice[KPD_LABEL] = methods.kpd(weights)
     return choice
+
+
+def narrow(lab: Lab) -> int:
+    """The width that the published code has without Fourier features: an eighth of the paper's 1024."""
+    return lab.width // 8
 
 
 def ours(lab: Lab) -> dict[str, Method]:
     """What the package adds to the paper's method, to be shown beside it."""
     return {
-        f"neural, exact {OURS}": methods.neural(steps=48, width=lab.width, adherence=1.0),
+        f"neural, exact {OURS}": methods.neural(steps=STEPS, width=lab.width, adherence=1.0),
         f"shape-aware {OURS}": methods.shape_aware(),
         f"shape-aware, exact {OURS}": methods.shape_aware(adherence=1.0),
     }
 
 
-def by_methods(subject: Subject, choice: Mapping[str, Method]) -> tuple[list[Outcome], dict[str, str]]:
-    """Deform a shape with each method: what came of those that apply, and what the others say."""
+def by_methods(
+    subject: Subject, choice: Mapping[str, Method], bound: dict[str, Bound] | None = None
+) -> tuple[list[Outcome], dict[str, str]]:
+    """Deform a shape with each method: what came of those that apply, and what the others say.
+
+    `bound` keeps what does not depend on the displacement, for the next one of the same shape and control points.
+    """
+    bound = {} if bound is None else bound
     found, refusals = [], {}
     for label, method in choice.items():
         try:
-            y = method(subject, subject.points.sources, subject.points.targets)
+            if label not in bound:
+                bound[label] = method.bind(subject, subject.points.sources)
+            y = bound[label].positions(subject.points.targets)
         except NotApplicable as refusal:
             refusals[label] = str(refusal)
         else:
@@ -120,18 +128,55 @@ def by_settings(subject: Subject, settings: Sequence[Setting]) -> list[Outcome]:
 
         y = moved(subject.positions)
         missed = float(np.linalg.norm(moved(p) - q, axis=1).mean())
-        found.append(Outcome(setting.label, y, replace(_measured(subject, y), at_points=missed)))
+        found.append(Outcome(setting.label, y, {**_measured(subject, y), "error_at_points": missed}))
     return found
 
 
-def _measured(subject: Subject, y: Array) -> Measures:
-    return measure(subject.positions, y, subject.faces, subject.points.sources, subject.points.targets)
+def _measured(subject: Subject, y: Array) -> dict[str, float]:
+    """The measures of a surface, by name. The subject's half side is 1, which is the paper's unit."""
+    x, faces, points = subject.positions, subject.faces, subject.points
+    curvature, laplacian = curvature_change(x, y, faces)
+    return {
+        "error": float(handle_errors(x, y, points.sources, points.targets).mean()),
+        "curvature": curvature.mean,
+        "curvature_median": curvature.median,
+        "laplacian": laplacian.mean,
+        "dirichlet": strain(x, y, faces).dirichlet_mean,
+        "flipped": flipped_triangles(x, y, faces).count,
+    }
 
 
-def table(caption: str, head: str, found: Sequence[Outcome], columns: Sequence[str]) -> Table:
-    """The measures of outcomes, those that `columns` names."""
-    rows = [[o.label, *(COLUMNS[name][1].format(o.numbers[name]) for name in columns)] for o in found]
-    return Table(caption, [head, *(COLUMNS[name][0] for name in columns)], rows)
+def group(found: Sequence[Outcome]) -> dict[str, list[Outcome]]:
+    """Outcomes by their label without the seed: one for each seed of a network, else one."""
+    groups: dict[str, list[Outcome]] = {}
+    for outcome in found:
+        groups.setdefault(outcome.label.partition(SEED)[0], []).append(outcome)
+    return groups
+
+
+def seeds_of(found: Sequence[Outcome], column: str) -> dict[str, list[float]]:
+    """A measure by label, a value for each seed."""
+    return {label: [outcome.numbers[column] for outcome in outcomes] for label, outcomes in group(found).items()}
+
+
+def first_of(found: Sequence[Outcome]) -> dict[str, Array]:
+    """The positions by label, of the first seed: what is drawn."""
+    return {label: outcomes[0].positions for label, outcomes in group(found).items()}
+
+
+def spoken(values: Sequence[float], form: str = "{:.3g}") -> str:
+    """A value, or the least and largest of several."""
+    low, high = form.format(min(values)), form.format(max(values))
+    return low if low == high else f"{low} to {high}"
+
+
+def table(name: str, caption: str, head: str, found: Sequence[Outcome], columns: Sequence[str]) -> Table:
+    """The measures of outcomes, those that `columns` names; of a network with several seeds the least and largest."""
+    rows = [
+        [label, *(spoken([o.numbers[column] for o in outcomes], COLUMNS[column][1]) for column in columns)]
+        for label, outcomes in group(found).items()
+    ]
+    return Table(name, caption, [head, *(COLUMNS[column][0] for column in columns)], rows)
 
 
 def numbers(found: Sequence[Outcome]) -> dict[str, dict[str, float]]:

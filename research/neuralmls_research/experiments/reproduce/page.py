@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from html import escape
 
 from neuralmls_research.experiments.reproduce.items import Item
-from neuralmls_research.experiments.reproduce.report import NOT_REPRODUCED, REPRODUCED, UNTESTABLE, Claim, Report, Table
+from neuralmls_research.experiments.reproduce.report import Claim, Report, Table, Verdict
 
-MARKS = {REPRODUCED: "yes", NOT_REPRODUCED: "no", UNTESTABLE: "open"}
+MARKS = {Verdict.REPRODUCED: "yes", Verdict.PARTLY: "part", Verdict.CONTRADICTED: "no", Verdict.UNTESTABLE: "open"}
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 1120px; margin: 0 auto; padding: 24px; }
 h1 { font-size: 28px; margin: 8px 0; }
@@ -25,8 +25,10 @@ table { border-collapse: collapse; font-size: 14px; }
 th, td { padding: 5px 10px; border-bottom: 1px solid #e3e3e3; text-align: left; vertical-align: top; }
 .measures td + td, .measures th + th { text-align: right; font-variant-numeric: tabular-nums; }
 .measures td:first-child { white-space: nowrap; }
-.yes, .no, .open { display: inline-block; border-radius: 4px; padding: 1px 8px; font-size: 13px; white-space: nowrap; }
+.yes, .part, .no, .open { display: inline-block; border-radius: 4px; padding: 1px 8px; font-size: 13px;
+  white-space: nowrap; }
 .yes { background: #dcefe0; color: #14532d; }
+.part { background: #fff1c9; color: #6b4a00; }
 .no { background: #f9dedc; color: #7f1d1d; }
 .open { background: #ececec; color: #444; }
 .missing { background: #fff6dd; border-left: 4px solid #e0b437; padding: 8px 14px; max-width: 840px; }
@@ -37,7 +39,7 @@ th, td { padding: 5px 10px; border-bottom: 1px solid #e3e3e3; text-align: left; 
 def page(reports: Mapping[Item, Report], version: str) -> str:
     """The HTML of the page."""
     claims = [(item, claim) for item, report in reports.items() for claim in report.claims]
-    counts = [f"{sum(c.verdict == verdict for _, c in claims)} {verdict}" for verdict in MARKS]
+    counts = [f"{sum(c.verdict == verdict and not c.ours for _, c in claims)} {verdict.value}" for verdict in MARKS]
     missing = [(item, sentence) for item, report in reports.items() for sentence in report.missing]
     rows = "".join(_claim_row(claim, item) for item, claim in claims)
     sections = "".join(_section(item, report) for item, report in reports.items())
@@ -62,7 +64,8 @@ side.</p>
 <h2 id="claims">What the paper says, and what came out</h2>
 <p>{", ".join(counts)}.</p>
 <div class="wide"><table>
-<thead><tr><th>claim</th><th>verdict</th><th>measured here</th><th>where</th></tr></thead>
+<thead><tr><th>what the paper says</th><th>verdict</th><th>its measure</th><th>rule</th>
+<th>measured here</th><th>what to conclude</th><th>where</th></tr></thead>
 <tbody>{rows}</tbody>
 </table></div>
 {sections}
@@ -82,9 +85,12 @@ def _missing(missing: list[tuple[Item, str]]) -> str:
 
 
 def _claim_row(claim: Claim, item: Item) -> str:
-    verdict = f'<span class="{MARKS[claim.verdict]}">{claim.verdict}</span>'
+    verdict = f'<span class="{MARKS[claim.verdict]}">{claim.verdict.value}</span>'
     where = f'<a href="#{item.name}">{item.name}</a>'
-    return f"<tr><td>{escape(claim.paper)}</td><td>{verdict}</td><td>{escape(claim.measured)}</td><td>{where}</td></tr>"
+    own = "<em>Our own check.</em> " if claim.ours else ""
+    cells = (escape(text) for text in (claim.measure, claim.rule, claim.measured, claim.reader))
+    row = "".join(f"<td>{cell}</td>" for cell in (own + escape(claim.paper), verdict, *cells, where))
+    return f"<tr>{row}</tr>"
 
 
 def _section(item: Item, report: Report) -> str:

@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import Any
 
-REPRODUCED, NOT_REPRODUCED, UNTESTABLE = "reproduced", "not reproduced", "cannot be tested here"
+
+class Verdict(StrEnum):
+    """What a rule says of the numbers."""
+
+    REPRODUCED = "reproduced"
+    PARTLY = "partly reproduced"
+    CONTRADICTED = "contradicted"
+    UNTESTABLE = "cannot be tested here"
 
 
 @dataclass(frozen=True)
@@ -31,29 +39,41 @@ class Claim:
     Attributes
     ----------
     paper : str
-        The claim, with the paper's number where it prints one.
+        The paper's sentence in our words, with its number where it prints one.
+    measure : str
+        The paper's measure, on the paper's axis.
+    rule : str
+        By what the verdict falls, written before any run: a rule of `verdicts`.
     measured : str
-        What was measured; or why nothing could be.
-    holds : bool or None
-        Whether the measurement agrees; None where there is none.
+        What this run gave, with measures of our own beside; or why nothing could be measured.
+    verdict : Verdict
+        What the rule says of the numbers.
+    reader : str
+        What a reader should conclude.
+    ours : bool
+        Whether this is a check of our own, which the paper says nothing of: it has no part in the paper's verdicts.
     """
 
     paper: str
+    measure: str
+    rule: str
     measured: str
-    holds: bool | None
-
-    @property
-    def verdict(self) -> str:
-        """In words."""
-        if self.holds is None:
-            return UNTESTABLE
-        return REPRODUCED if self.holds else NOT_REPRODUCED
+    verdict: Verdict
+    reader: str
+    ours: bool = False
 
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of text below a head; the first column names the row."""
+    """Rows of text below a head; the first column names the row.
 
+    Attributes
+    ----------
+    name : str
+        Short, stable, the only one of its kind in all reports, and fit for a file.
+    """
+
+    name: str
     caption: str
     head: list[str]
     rows: list[list[str]]

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict
 from pathlib import Path
+from time import perf_counter, process_time
 from typing import Any
 
 from neuralmls import __version__
@@ -14,6 +15,7 @@ from neuralmls.plugin import write_atomically
 from neuralmls_research.experiments.reproduce.items import Item
 from neuralmls_research.experiments.reproduce.lab import Lab
 from neuralmls_research.experiments.reproduce.page import page
+from neuralmls_research.experiments.reproduce.provenance import provenance
 from neuralmls_research.experiments.reproduce.report import Report
 
 PAGE, NUMBERS = "index.html", "numbers.json"
@@ -43,28 +45,29 @@ def reproduce(
     FileError
         A file cannot be written.
     """
+    run: dict[str, Any] = {**provenance(), "seeds": list(lab.seeds), "seconds": {}}
     reports = {}
     for item in items:
+        wall, processor = perf_counter(), process_time()
         with around(item.name):
             reports[item] = item.run(lab)
-    write_atomically(lab.folder / NUMBERS, (json.dumps(_numbers(reports), indent=1) + "\n").encode())
+        spent = perf_counter() - wall, process_time() - processor
+        run["seconds"][item.name] = {"wall": round(spent[0], 2), "processor": round(spent[1], 2)}
+    write_atomically(lab.folder / NUMBERS, (json.dumps({**run, "items": _items(reports)}, indent=1) + "\n").encode())
     path = lab.folder / PAGE
     write_atomically(path, page(reports, __version__).encode())
     return path, reports
 
 
-def _numbers(reports: dict[Item, Report]) -> dict[str, Any]:
+def _items(reports: dict[Item, Report]) -> dict[str, Any]:
     """All that was measured, for machines."""
     return {
-        "neuralmls": __version__,
-        "items": {
-            item.name: {
-                "title": item.title,
-                "setting": report.setting,
-                "claims": [{**asdict(claim), "verdict": claim.verdict} for claim in report.claims],
-                "missing": report.missing,
-                "numbers": report.numbers,
-            }
-            for item, report in reports.items()
-        },
+        item.name: {
+            "title": item.title,
+            "setting": report.setting,
+            "claims": [asdict(claim) for claim in report.claims],
+            "missing": report.missing,
+            "numbers": report.numbers,
+        }
+        for item, report in reports.items()
     }

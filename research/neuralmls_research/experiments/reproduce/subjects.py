@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,6 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from neuralmls import ControlPoints, read
 from neuralmls.samples import make
+from neuralmls_research.baselines.kpd import KeypointDeformer
+from neuralmls_research.experiments.methods import Surface
 from neuralmls_research.experiments.published import published
 from neuralmls_research.experiments.reproduce.lab import Lab
 
@@ -38,6 +41,13 @@ CREATURE = {
     "left foot": ((0.5, -1.0, 0.1), 1.4, 26.0, (0.0, 0.0, 0.0)),
     "right foot": ((-0.5, -1.0, 0.1), 1.4, 26.0, (0.0, 0.2, 0.6)),
     "tail": ((0.0, -0.25, -1.0), 1.2, 30.0, (0.4, 0.5, 0.0)),
+}
+# Displacements of cars after the published study's, in halves of the longest side: which keypoints of a car that looks
+# along x move, from normalised keypoints (8, 3), and by how much.
+CAR_MOVES: dict[str, list[tuple[Callable[[Array], NDArray[np.bool_]], tuple[float, float, float]]]] = {
+    "longer": [(lambda p: p[:, 0] > 0.5, (0.3, 0.0, 0.0)), (lambda p: p[:, 0] < -0.5, (-0.2, 0.0, 0.0))],
+    "higher": [(lambda p: p[:, 1] > 0.1, (0.0, 0.2, 0.0))],
+    "wider": [(lambda p: p[:, 2] < 0.0, (0.0, 0.0, -0.2))],
 }
 # Our plain chair: boxes by centre and size, x to the front. It gets longer legs and a higher back, as the paper's does.
 BOXES = [
@@ -101,6 +111,11 @@ class Subject:
         points = ControlPoints(self.points.sources, targets, self.points.names)
         return replace(self, points=points)
 
+    def differs_by_displacement(self, other: Subject) -> bool:
+        """Whether only the targets differ: the same shape and control points at rest."""
+        mine, theirs = ((s.positions, s.faces, s.points.sources) for s in (self, other))
+        return all(np.array_equal(a, b) for a, b in zip(mine, theirs, strict=True))
+
 
 def chair(lab: Lab, case: str = "user_study_1") -> Subject:
     """ShapeNetChair1 with displacements of the user study, else our sample with its own."""
@@ -119,6 +134,13 @@ def airplane(lab: Lab) -> Subject:
     return _shapenet(lab, "airplane", "ShapeNetPlane1", "default") or _sample("airplane")
 
 
+def chairs(lab: Lab) -> list[Subject]:
+    """All chairs and displacements that the paper's authors published; else our sample."""
+    study = [(folder, f"user_study_{i}") for folder in ("ShapeNetChair1", "ShapeNetChair3") for i in (1, 2, 3)]
+    found = [_shapenet(lab, "chair", folder, case) for folder, case in (*study, ("chair2", "default"))]
+    return [subject for subject in found if subject is not None] or [_sample("chair")]
+
+
 def many(lab: Lab) -> list[Subject]:
     """All shapes and displacements of the paper that the data has, and the organic shape; else all that are ours."""
     found = [
@@ -127,25 +149,64 @@ def many(lab: Lab) -> list[Subject]:
         for case in ("user_study_1", "user_study_2", "user_study_3")
     ]
     kept = [subject for subject in found if subject is not None] or [_sample(name) for name in ("chair", "airplane")]
-    return [*kept, _sample("car"), _sample("table"), organic(lab)]
+    return [*kept, *cars(lab), _sample("table"), organic(lab)]
 
 
-def car(lab: Lab) -> Subject:  # noqa: ARG001 - the data has none of the paper's cars
-    """Our sample."""
-    return _sample("car")
+def cars(lab: Lab) -> list[Subject]:
+    """A car with KeypointDeformer's keypoints and displacements like the study's; without its weights, our sample.
+
+    None of the paper's cars is in the data. A car of many loose parts is, which looks along z; so does our sample.
+    """
+    weights = lab.keypoint_weights("car")
+    if weights is None:
+        return [_sample("car")]
+    path = lab.find("manufactured/VW-new-beetle/VW-new-beetle.obj")
+    if path is None:
+        made = make("car")
+        origin, positions, faces = "our generated sample", made.vertices, made.triangles.astype(np.int64)
+    else:
+        shape = read(path)
+        assert shape.faces is not None
+        origin, positions, faces = (
+            "a Volkswagen Beetle by Kator and Legaz",
+            shape.positions,
+            shape.faces.astype(np.int64),
+        )
+    x = np.stack([positions[:, 2], positions[:, 1], -positions[:, 0]], axis=1)
+    bound = KeypointDeformer.read(weights).bind(Surface(x, faces))  # type: ignore[arg-type]
+    points = ControlPoints(bound.keypoints, bound.keypoints)
+    rest = _normalised("car", origin, x, faces, points, ours=True)
+    found = []
+    for name, moves in CAR_MOVES.items():
+        offsets = np.zeros_like(rest.points.sources)
+        for chosen, offset in moves:
+            offsets[chosen(rest.points.sources)] = offset
+        subject = rest.moved(offsets)
+        found.append(replace(subject, origin=f"{origin}, {name}", view=(60.0, 20.0)))
+    return found
+
+
+def car(lab: Lab) -> Subject:
+    """The first of the cars."""
+    return cars(lab)[0]
 
 
 def organic(lab: Lab) -> Subject:
     """The armadillo, made coarser as in the paper, else a creature of ours: both are closed manifolds."""
+    return armadillo(lab, 900 if lab.quick else 8_650) or _creature(3 if lab.quick else 5)
+
+
+def armadillo(lab: Lab, vertices: int) -> Subject | None:
+    """The armadillo with control points of ours, made coarser to about as many vertices; None where it is not here."""
     import pyvista
 
     path = lab.find("organic/armadillo.obj")
     if path is None:
-        return _creature(3 if lab.quick else 5)
+        return None
     shape = read(path)
     assert shape.faces is not None
     mesh = pyvista.PolyData(shape.positions, np.insert(shape.faces.astype(np.int64), 0, 3, axis=1).ravel())
-    mesh = mesh.decimate(0.98 if lab.quick else 0.8)
+    mesh = mesh.decimate(1 - vertices / len(shape.positions))
     places, offsets = (np.array(column) for column in zip(*ARMADILLO.values(), strict=True))
     points = ControlPoints(places, places + offsets, list(ARMADILLO))
     x, faces = np.asarray(mesh.points, dtype=np.float64), mesh.faces.reshape(-1, 4)[:, 1:].astype(np.int64)
@@ -198,7 +259,8 @@ def _shapenet(lab: Lab, name: str, folder: str, case: str) -> Subject | None:
     shape = found.shape
     assert shape.faces is not None
     faces = shape.faces.astype(np.int64)
-    subject = _normalised(name, f"the paper's {folder}", shape.positions, faces, found.displacements[case])
+    origin = f"the paper's {folder}, {case.replace('_', ' ')}"
+    subject = _normalised(name, origin, shape.positions, faces, found.displacements[case])
     return replace(subject, view=(60.0, 30.0))
 
 

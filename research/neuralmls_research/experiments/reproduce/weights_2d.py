@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from neuralmls import InverseDistanceWeights, NeuralWeights, Weights, softmax
+from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.drawing import plots
 from neuralmls_research.experiments.reproduce.lab import Lab
 from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
@@ -52,6 +53,10 @@ def run(lab: Lab) -> Report:
     ruled = {name: share.round(4).tolist() for name, share in rules.items()}
     own = {name: float((w.max(axis=1) > 0.9).mean()) for name, w in weights.items()}
     grown = rules["neural, after"][3] - rules["neural, before"][3]
+    changed = verdicts.together(
+        verdicts.above(0.01, [abs(grown)]),
+        verdicts.more("the share above 0.9", [own["neural, after"]], own["classic, after"]),
+    )
     return Report(
         f"Grid of {side} x {side} points on the square [-0.3, 0.3]² of the published script; network of width "
         f"{lab.width}, 72 steps, temperature 1; classic weights 1/d². The upper right control point moves to "
@@ -66,12 +71,16 @@ def run(lab: Lab) -> Report:
         ],
         claims=[
             Claim(
-                "In 2D too, moving one control point changes the weights of all to fit the new configuration.",
-                f"Share of the square ruled by the moved control point: {rules['neural, before'][3]:.3f} before, "
+                paper="In 2D too, moving one control point changes the weights of all to fit the new configuration.",
+                measure="Share of the square that the moved control point rules.",
+                rule=changed.rule,
+                measured=f"Share of the square ruled by the moved control point: {rules['neural, before'][3]:.3f} "
+                f"before, "
                 f"{rules['neural, after'][3]:.3f} after. One control point has over 0.9 of the weight on "
                 f"{own['neural, before']:.0%} and {own['neural, after']:.0%} of the square, with classic weights on "
                 f"{own['classic, before']:.0%} and {own['classic, after']:.0%}.",
-                bool(abs(grown) > 0.01 and own["neural, after"] > own["classic, after"]),
+                verdict=changed.verdict,
+                reader="Regions re-form as a whole.",
             )
         ],
         numbers={"share_ruled": ruled, "share_above_0.9": own},

@@ -1,7 +1,7 @@
 //! Training: control point i is to be given the class i, and samples of a shape, where there are any, the labels that they have.
 //!
 //! Full-batch cross-entropy, Adam (Kingma, Ba 2015, as in `torch.optim.Adam`), rate 6e-4, and a tenth of it for the last fifth of the steps.
-//! Where it differs from the paper: by default it does not stop after a fixed 48 steps but when every control point has most
+//! Where it differs from the published code: by default it does not stop after a fixed 48 steps but when every control point has most
 //! of the weight at its own place, because handles that do not own their place do not arrive at their targets.
 
 use std::f64::consts::PI;
@@ -36,7 +36,7 @@ pub enum Schedule {
         /// The most steps.
         at_most: usize,
     },
-    /// Exactly so many, the last fifth of them at a tenth of the rate: 48 in the paper.
+    /// Exactly so many, the last fifth of them at a tenth of the rate: 48 in the published code, of which the paper says nothing.
     Fixed(usize),
     /// Exactly so many, the rate falling to 0 as half a cosine does.
     Cosine(usize),
