@@ -54,12 +54,7 @@ class Weights:
         p: _Doubles,
         bounds: _Doubles | None,
         x: _Doubles,
-        labels: _Singles,
-        batch: int,
-        softness: float,
-        width: int,
-        steps: int,
-        rate: float,
+        faces: NDArray[np.uint32],
         seed: int,
         progress: _Progress,
     ) -> Weights: ...
@@ -194,7 +189,9 @@ class Session:
     @property
     def frame(self) -> _Doubles | None: ...
     def with_frame(self, frame: _Doubles | None) -> Session: ...
-    def fit(self, bounds: _Doubles | None, progress: _Progress) -> Map: ...
+    def fit(
+        self, bounds: _Doubles | None, shape: tuple[_Doubles, NDArray[np.uint32]] | None, progress: _Progress
+    ) -> Map: ...
 
 class Map:
     @staticmethod

@@ -211,21 +211,12 @@ class Session:
         ------
         ArgumentError
             The shapes have another dimension, or no size; shape-aware weights without a shape.
-        NeuralMLSError
-            Shape-aware weights need SciPy, and it is not installed.
         """
         dimension = self.points.dimension
         boxes = [box_of(shape, dimension) for shape in shapes]
         bounds = as_box(box_around(np.concatenate(boxes)), dimension) if boxes else None
-        if self.weights != "shape-aware":
-            return Map._of(self._core.fit(bounds, progress))
-        if bounds is None:
-            raise ArgumentError("shapes: shape-aware weights need at least one shape to learn from")
-        frame = self.frame if self.frame is not None else bounds
-        x, faces = together(shapes, dimension)
-        seed = self.settings["weights"]["seed"]
-        weights = ShapeAwareWeights.fit(self.points.sources, x, faces, bounds=frame, seed=seed, progress=progress)
-        return Map._of(_core.Map.of(self._core.with_frame(np.ascontiguousarray(frame)), weights._core))
+        shape = together(shapes, dimension) if shapes and self.weights == "shape-aware" else None
+        return Map._of(self._core.fit(bounds, shape, progress))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored_session, (self._core.to_json(), self._notes)
@@ -399,8 +390,8 @@ class Map:
         - torn: places where `J` stretches far more than in most places, as between control points that move apart;
         - ungoverned: a part that moves, and is far from all control points.
 
-        What would help was tried: another temperature, soft handles and, where neither does, shape-aware weights (if
-        SciPy is there) are named only where they at least halve it; exact handles only where they arrive.
+        What would help was tried: another temperature, soft handles and, where neither does, shape-aware weights
+        are named only where they at least halve it; exact handles only where they arrive.
 
         Parameters
         ----------
@@ -440,7 +431,7 @@ class Map:
             return None
         try:
             weights = ShapeAwareWeights.fit(self._core.session.points.sources, x, faces)
-        except NeuralMLSError:  # no SciPy, or no size to measure by
+        except NeuralMLSError:  # no size to measure by
             return None
         session = self._core.session.with_settings('{"weights": {"kind": "shape-aware"}}')
         return _core.Map.of(session, weights._core)

@@ -1,6 +1,6 @@
 //! Sessions, and what comes of them: the objects of `crates/session`, as Python has them.
 
-use neuralmls_core::Pose;
+use neuralmls_core::{Pose, Shape};
 use neuralmls_session::{Advice, Error, Held};
 use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -101,15 +101,21 @@ impl Session {
         Ok(Session(neuralmls_session::Session { frame, ..self.0.clone() }))
     }
 
-    /// Fits the weights: in the session's frame, else in the box `bounds`, else in that of the control points.
+    /// Fits the weights: in the session's frame, else in the box `bounds`, else in that of the control points; `shape`: points n x d and
+    /// triangles f x 3, for weights that learn from them.
     fn fit(
         &self,
         py: Python<'_>,
         bounds: Option<PyReadonlyArray2<'_, f64>>,
+        shape: Option<(PyReadonlyArray2<'_, f64>, PyReadonlyArray2<'_, u32>)>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Map> {
         let bounds = self::bounds(bounds, self.0.points.dim())?;
-        run_session(py, progress, |report| self.0.fit(bounds.as_ref(), report)).map(Map)
+        let shape = match &shape {
+            Some((x, faces)) => Some(Shape { x: x.as_slice()?, faces: faces.as_slice()?.as_chunks::<3>().0 }),
+            None => None,
+        };
+        run_session(py, progress, |report| self.0.fit(bounds.as_ref(), shape, report)).map(Map)
     }
 }
 

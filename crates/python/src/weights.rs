@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use neuralmls_core::{Frame, InverseDistance, Layer, Network, Samples, Schedule, Trained, Training};
+use neuralmls_core::{Frame, InverseDistance, Layer, Network, Schedule, Shape, Trained, Training};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -79,7 +79,7 @@ impl Weights {
             .map(Weights::of)
     }
 
-    /// Taught by samples of a shape with soft labels (k x m), of which a step looks at `batch`.
+    /// Taught by the points (n x d) and triangles (f x 3, none for a cloud) of a shape too.
     #[staticmethod]
     #[allow(clippy::too_many_arguments)]
     fn shape_aware(
@@ -87,23 +87,15 @@ impl Weights {
         p: PyReadonlyArray2<'_, f64>,
         bounds: Option<PyReadonlyArray2<'_, f64>>,
         x: PyReadonlyArray2<'_, f64>,
-        labels: PyReadonlyArray2<'_, f32>,
-        batch: usize,
-        softness: f32,
-        width: usize,
-        steps: usize,
-        rate: f64,
+        faces: PyReadonlyArray2<'_, u32>,
         seed: u64,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Weights> {
-        let (dim, p) = (p.shape()[1], p.as_slice()?);
-        let frame = frame(bounds, p, dim)?;
-        let training = Training { width, schedule: Schedule::Cosine(steps), rate, seed, fourier_sigma: None };
-        let samples = Samples { x: x.as_slice()?, labels: labels.as_slice()?, batch };
-        run(py, progress, |report| {
-            neuralmls_core::Weights::shape_aware(p, dim, frame, samples, softness, &training, report)
-        })
-        .map(Weights::of)
+        let (dim, p, x) = (p.shape()[1], p.as_slice()?, x.as_slice()?);
+        let frame = frame(bounds, x, dim)?;
+        let shape = Shape { x, faces: faces.as_slice()?.as_chunks::<3>().0 };
+        run(py, progress, |report| neuralmls_core::Weights::shape_aware(p, dim, frame, shape, seed, report))
+            .map(Weights::of)
     }
 
     /// The classic ones.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use neuralmls_core::{
     progress::Progress, Aim, Deformed, Deformer, Frame, Handles, InverseDistance, PointTree, Pose, Schedule,
-    Trained, Training, Transform, Weights,
+    Shape, Trained, Training, Transform, Weights,
 };
 
 use crate::{Bounds, Error, HandlesSetting, Session, WeightsSettings};
@@ -18,7 +18,7 @@ use crate::{Bounds, Error, HandlesSetting, Session, WeightsSettings};
 /// use neuralmls_session::{read, WeightsSettings};
 /// let mut session = read(b"name,x,y,target_x,target_y\na,0,0,0,0\nb,1,0,0,1\n", "points.csv").unwrap().session;
 /// session.settings.weights = WeightsSettings::InverseDistance { alpha: 1.0, epsilon: 0.0 };
-/// let map = session.fit(None, &mut |_| true).unwrap();
+/// let map = session.fit(None, None, &mut |_| true).unwrap();
 /// let moved = map.at(&[0.5, 0.0], &mut |_| true).unwrap(); // half of the way, turned by a quarter
 /// assert!((moved[0] - 0.0).abs() < 1e-9 && (moved[1] - 0.5).abs() < 1e-9);
 /// ```
@@ -31,11 +31,16 @@ pub struct Map {
 
 impl Session {
     /// Fits the weights to the control points: in the session's own frame, else in `bounds`, the box around the shapes, else in the box of
-    /// the control points.
+    /// the control points. `shape` is what shape-aware weights learn from: all points and faces of the shapes.
     ///
     /// # Errors
-    /// Where a setting is out of its range, a box has no size; for shape-aware weights, which need a shape: [`Map::of`] takes them.
-    pub fn fit(&self, bounds: Option<&Bounds>, progress: &mut Progress<'_>) -> Result<Map, Error> {
+    /// Where a setting is out of its range, a box has no size; for shape-aware weights without a shape.
+    pub fn fit(
+        &self,
+        bounds: Option<&Bounds>,
+        shape: Option<Shape<'_>>,
+        progress: &mut Progress<'_>,
+    ) -> Result<Map, Error> {
         self.settings.check()?;
         let mut session = self.clone();
         session.frame = self.frame.clone().or_else(|| bounds.cloned());
@@ -53,8 +58,11 @@ impl Session {
             WeightsSettings::InverseDistance { alpha, epsilon } => {
                 Weights::InverseDistance(InverseDistance::new(&p, dim, frame, alpha, epsilon)?)
             }
-            WeightsSettings::ShapeAware { .. } => {
-                return Err(Error::argument("shape-aware weights are not fitted here yet: `neuralmls deform` and the Python package take this session"));
+            WeightsSettings::ShapeAware { seed } => {
+                let shape = shape.ok_or_else(|| {
+                    Error::argument("shapes: shape-aware weights need at least one shape to learn from")
+                })?;
+                Weights::shape_aware(&p, dim, frame, shape, seed, progress)?
             }
         };
         Map::of(session, weights)
