@@ -120,7 +120,7 @@ fuzz: tools
 	@touch $@
 
 .venv/test.stamp: .venv/bin/python pyproject.toml research/pyproject.toml $(RUST)
-	$(BIN)/python -m pip install --quiet --editable '.[figures,shape-aware,test]' --editable ./research
+	$(BIN)/python -m pip install --quiet --editable '.[figures,test]' --editable ./research
 	@touch $@ .venv/figures.stamp
 
 .venv/wheels.stamp: .venv/bin/python pyproject.toml

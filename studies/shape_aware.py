@@ -17,12 +17,13 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
+import shape_logits
+import surface_graph
 from creatures import Array, creature, free, inside, paired
 from numpy.typing import ArrayLike, NDArray
+from surface_graph import Reach, SurfaceGraph
 
 from neuralmls import Deformer, NotApplicable, farthest_of
-from neuralmls.weights import shape_aware, surface_graph
-from neuralmls.weights.surface_graph import Reach, SurfaceGraph
 from neuralmls_research.experiments.poses import POSE_METHODS, Poses, pose_errors
 
 COUNTS = (12, 40)
@@ -41,9 +42,9 @@ PLACES = ("on", "inside")  # where control points are
 class Setting:
     """What is chosen; as it was chosen unless said."""
 
-    power: float = shape_aware.POWER
-    kept: float = shape_aware.KEPT
-    reach: float = shape_aware.REACH
+    power: float = shape_logits.POWER
+    kept: float = shape_logits.KEPT
+    reach: float = shape_logits.REACH
     hold: float = surface_graph.HOLD
     held: float = surface_graph.HELD
     around: float = surface_graph.AROUND
@@ -111,7 +112,7 @@ def setting_errors(poses: Poses, p: Array, moved: Array) -> list[float]:
     errors = []
     for each in SETTINGS:
         graph_found = found(each.around, each.hold, each.held)
-        logits = shape_aware.shape_logits(graph_found, at, power=each.power, kept=each.kept, reach=each.reach)
+        logits = shape_logits.shape_logits(graph_found, at, power=each.power, kept=each.kept, reach=each.reach)
         deformer = Deformer(x, Given(p, logits))
         pairs = zip(moved, poses.poses, strict=True)
         off = [np.linalg.norm(deformer.deform(q) - pose, axis=1).mean() for q, pose in pairs]

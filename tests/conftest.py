@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
-
-from neuralmls.weights import shape_aware
 
 # The same examples every time: a test that passes here passes elsewhere. HYPOTHESIS_PROFILE=default searches on.
 settings.register_profile("repeatable", derandomize=True, deadline=None)
@@ -35,11 +32,3 @@ def data() -> Path:
 def golden() -> Path:
     """Results of the published code: ../shared/golden or $NEURALMLS_GOLDEN."""
     return _folder("NEURALMLS_GOLDEN", "golden")
-
-
-@pytest.fixture(scope="module")
-def brief_training() -> Iterator[None]:
-    """Shape-aware weights after a tenth of their steps: for tests of what is done with them."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(shape_aware, "STEPS", shape_aware.STEPS // 10)
-        yield

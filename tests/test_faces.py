@@ -45,7 +45,6 @@ def weights_of(session: nm.Session, shape: nm.Shape) -> nm.Weights:
     return nm.ShapeAwareWeights.fit(session.points.sources, shape.positions, shape.faces, bounds=box, **parameters)
 
 
-@pytest.mark.usefixtures("brief_training")
 @pytest.mark.parametrize("session", SESSIONS, ids=lambda session: session["name"])
 def test_every_face_gives_the_same(session, chair, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

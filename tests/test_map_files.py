@@ -60,7 +60,6 @@ def refused(folder: Path, data: bytes) -> str:
 
 
 @pytest.mark.parametrize("weights", ["neural", "shape-aware", "inverse-distance"])
-@pytest.mark.usefixtures("brief_training")
 def test_a_saved_map_is_the_same_bits(weights, tmp_path):
     first = saved(tmp_path, weights)
     loaded = nm.Map.load(tmp_path / "a.map")

@@ -33,7 +33,7 @@ def session(weights: str = "neural", **parameters: Any) -> nm.Session:
 
 
 @pytest.fixture(scope="module")
-def kept(brief_training: None) -> dict[str, Any]:
+def kept() -> dict[str, Any]:
     """One of each kind of what is kept."""
     neural = nm.NeuralWeights.fit(P, width=64)
     classic = nm.InverseDistanceWeights(P, alpha=2, epsilon=0.1)

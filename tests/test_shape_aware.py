@@ -8,10 +8,6 @@ import numpy as np
 import pytest
 
 import neuralmls as nm
-from neuralmls.weights.surface_graph import SurfaceGraph
-from neuralmls.weights.surface_links import SPACING
-
-pytest.importorskip("scipy")
 
 BOX_FACES = np.array(
     [
@@ -46,83 +42,6 @@ def stool() -> tuple[np.ndarray, np.ndarray]:
     """A seat of one box, and two legs that are boxes, side by side, and end inside the seat."""
     seat = box((-1, -0.5, 0.9), (1, 0.5, 1.0))
     return soup([seat, box((-0.16, -0.05, -1), (-0.06, 0.05, 0.95)), box((0.06, -0.05, -1), (0.16, 0.05, 0.95))])
-
-
-def along(x: np.ndarray, faces: np.ndarray | None, start: Any, end: Any) -> float:
-    """The distance along the shape."""
-    graph = SurfaceGraph(np.asarray(x, float), faces)
-    return float(graph.reach(np.array([start], float)).far[graph.nearest(np.array([end], float))[0]])
-
-
-def test_a_path_over_coarse_triangles_is_about_straight() -> None:
-    square = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
-    faces = np.array([[0, 1, 2], [0, 2, 3]])
-    for start, end in (((-1, -1, 0), (1, 1, 0)), ((1, -1, 0), (-1, 1, 0)), ((-1, -1, 0), (1, 0, 0))):
-        straight = np.linalg.norm(np.subtract(end, start))
-        assert straight - 2 * SPACING < along(square, faces, start, end) < 1.05 * straight
-
-
-def test_legs_side_by_side_are_far_apart_along_the_shape() -> None:
-    x, faces = stool()
-    assert along(x, faces, (-0.06, 0, -1), (0.06, 0, -1)) > 3.5
-
-
-def test_a_leg_that_is_a_box_of_its_own_belongs_to_its_seat() -> None:
-    x, faces = stool()
-    assert along(x, faces, (-0.16, 0, 0), (-1, 0, 0.9)) == pytest.approx(0.9 + 0.84, abs=0.15)
-
-
-def test_a_control_point_in_a_body_is_near_every_side_of_it() -> None:
-    x, faces = soup([box((-1, -0.5, -0.12), (1, 0.5, 0.12))])
-    below = (0, 0, -0.03)
-    assert along(x, faces, below, (0, 0, -0.12)) == pytest.approx(0.09, abs=SPACING / 2)
-    assert along(x, faces, below, (0, 0, 0.12)) == pytest.approx(0.15, abs=SPACING / 2)
-    # One on the surface is as far from the other side as the way around.
-    assert along(x, faces, (0, 0, -0.12), (0, 0, 0.12)) > 1
-
-
-def test_parts_that_touch_nowhere_are_reached_from_their_nearest() -> None:
-    x, faces = soup([box((-1, -0.1, -0.1), (-0.5, 0.1, 0.1)), box((0.3, -0.1, -0.1), (1, 0.1, 0.1))])
-    # The one link is between any two of the nearest nodes: at most from corner to corner.
-    assert 2 - 2 * SPACING < along(x, faces, (-1, 0.1, 0.1), (1, 0.1, 0.1)) < 2.6
-
-
-def test_a_triangle_soup_is_joined_where_its_triangles_meet() -> None:
-    x, faces = stool()
-    torn = x[faces].reshape(-1, 3)
-    apart = np.arange(len(torn)).reshape(-1, 3)
-    ends = (-0.16, -0.05, -1), (1, 0.5, 0.9)
-    assert along(torn, apart, *ends) == pytest.approx(along(x, faces, *ends), rel=1e-9)
-
-
-def test_a_cloud_is_followed_point_by_point() -> None:
-    t = np.linspace(0, np.pi, 400)
-    horseshoe = np.stack([0.1 * np.cos(t), np.zeros_like(t), np.sin(t)], axis=1)
-    assert along(horseshoe, None, horseshoe[0], horseshoe[-1]) > 1.8
-
-
-def test_triangles_without_area_and_repeated_points_do_no_harm() -> None:
-    x, faces = stool()
-    worse = np.concatenate([x, x[:3]])
-    more = np.concatenate([faces, [[0, 0, 0], [0, 1, 1], [len(x), 1, 0]]])
-    ends = (-0.16, -0.05, -1), (1, 0.5, 0.9)
-    assert along(worse, more, *ends) == pytest.approx(along(x, faces, *ends), rel=1e-9)
-
-
-def test_between_two_control_points_a_walk_meets_either_as_often_and_always_one() -> None:
-    graph = SurfaceGraph(*soup([box((-1, -0.1, -0.1), (1, 0.1, 0.1))]))
-    p = np.array([[-1.0, 0, 0], [1, 0, 0]])
-    met = graph.first_met(p, graph.reach(p))
-    assert met[graph.nearest(np.array([[0, 0.1, 0]]))[0]] == pytest.approx([0.5, 0.5], abs=0.03)
-    assert met.sum(axis=1) == pytest.approx(1)
-    assert met.min() >= 0
-
-
-def test_a_walk_from_where_a_thin_leg_begins_ends_in_the_trunk() -> None:
-    graph = SurfaceGraph(*soup([box((-1, -0.3, -0.3), (0, 0.3, 0.3)), box((-0.05, -0.03, -0.03), (1, 0.03, 0.03))]))
-    p = np.array([[-1.0, 0, 0], [1, 0, 0]])
-    at = graph.nearest(np.array([[0.05, 0.03, 0]]))[0]
-    assert graph.first_met(p, graph.reach(p))[at, 0] > 0.75  # by distances alone it would be near the middle
 
 
 def test_a_moved_leg_leaves_the_leg_beside_it() -> None:

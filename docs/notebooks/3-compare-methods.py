@@ -4,7 +4,7 @@
 # Every method that can, measured on one shape and one set of control points. This needs the
 # package of the experiments, in a checkout:
 #
-#     pip install --editable '.[figures,shape-aware]' --editable ./research
+#     pip install --editable '.[figures]' --editable ./research
 #
 # Put your files here. `None` takes the sample airplane, whose control points bend its wings
 # up.

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 _Progress = Callable[[float], None] | None
 _Doubles = NDArray[np.float64]
 _Singles = NDArray[np.float32]
+_Shape = tuple[_Doubles, NDArray[np.uint32]]
 
 VERSION: str
 
@@ -39,20 +40,8 @@ class PointTree:
 
 class Weights:
     @staticmethod
-    def fitted(p: _Doubles, bounds: _Doubles | None, settings: str, progress: _Progress) -> Weights: ...
-    @staticmethod
-    def shape_aware(
-        p: _Doubles,
-        bounds: _Doubles | None,
-        x: _Doubles,
-        labels: _Singles,
-        batch: int,
-        softness: float,
-        width: int,
-        steps: int,
-        rate: float,
-        seed: int,
-        progress: _Progress,
+    def fitted(
+        p: _Doubles, bounds: _Doubles | None, shape: _Shape | None, settings: str, progress: _Progress
     ) -> Weights: ...
     @staticmethod
     def of_layers(
@@ -184,7 +173,7 @@ class Session:
     def frame(self) -> _Doubles | None: ...
     def with_frame(self, frame: _Doubles | None) -> Session: ...
     def aim(self, handles: Handles) -> _Doubles: ...
-    def fit(self, bounds: _Doubles | None, progress: _Progress) -> Map: ...
+    def fit(self, bounds: _Doubles | None, shape: _Shape | None, progress: _Progress) -> Map: ...
 
 class Map:
     @staticmethod

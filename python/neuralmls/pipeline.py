@@ -63,8 +63,6 @@ def deform(
     ------
     ArgumentError
         An argument is out of its range, or does not fit another.
-    NeuralMLSError
-        Shape-aware weights need SciPy, and it is not installed.
 
     Examples
     --------

@@ -216,21 +216,13 @@ class Session:
         ------
         ArgumentError
             The shapes have another dimension, or no size; shape-aware weights without a shape.
-        NeuralMLSError
-            Shape-aware weights need SciPy, and it is not installed.
         """
         dimension = self.points.dimension
         boxes, bounds = [box_of(shape, dimension) for shape in shapes], self.frame
         if boxes and bounds is None:
             bounds = as_box(box_around(np.concatenate(boxes)), dimension)
-        if self.weights != "shape-aware":
-            return Map._of(self._core.fit(bounds, progress))
-        if not shapes or bounds is None:
-            raise ArgumentError("shapes: shape-aware weights need at least one shape to learn from")
-        x, faces = together(shapes, dimension)
-        seed = self.settings["weights"]["seed"]
-        weights = ShapeAwareWeights.fit(self.points.sources, x, faces, bounds=bounds, seed=seed, progress=progress)
-        return Map._of(_core.Map.of(self._core.with_frame(np.ascontiguousarray(bounds)), weights._core))
+        shape = together(shapes, dimension) if shapes and self.weights == "shape-aware" else None
+        return Map._of(self._core.fit(bounds, shape, progress))
 
     def _repr_html_(self) -> str:
         return fact_table("Session", _facts(self)) + self.points._repr_html_()
@@ -412,8 +404,8 @@ class Map:
         - torn: places where `J` stretches far more than in most places, as between control points that move apart;
         - ungoverned: a part that moves, and is far from all control points.
 
-        What would help was tried: another temperature, soft handles and, where neither does, shape-aware weights (if
-        SciPy is there) are named only where they at least halve it; exact handles only where they arrive.
+        What would help was tried: another temperature, soft handles and, where neither does, shape-aware weights
+        are named only where they at least halve it; exact handles only where they arrive.
 
         Parameters
         ----------
@@ -512,7 +504,7 @@ class Map:
             return None
         try:
             weights = ShapeAwareWeights.fit(self._core.session.points.sources, x, faces)
-        except NeuralMLSError:  # no SciPy, or no size to measure by
+        except NeuralMLSError:  # no size to measure by
             return None
         session = self._core.session.with_settings('{"weights": {"kind": "shape-aware"}}')
         return _core.Map.of(session, weights._core)

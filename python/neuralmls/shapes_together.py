@@ -7,8 +7,9 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from neuralmls.arrays import as_points, as_triangles, box_around
+from neuralmls.arrays import as_points, box_around
 from neuralmls.errors import ArgumentError
+from neuralmls.placement import as_indices
 from neuralmls.shape import Shape
 
 
@@ -28,15 +29,13 @@ def box_of(shape: Shape | ArrayLike, dimension: int) -> NDArray[np.float64]:
     return box_around(x)
 
 
-def together(
-    shapes: Iterable[Shape | ArrayLike], dimension: int
-) -> tuple[NDArray[np.float64], NDArray[np.int64] | None]:
-    """The points and triangles of several shapes as those of one."""
+def together(shapes: Iterable[Shape | ArrayLike], dimension: int) -> tuple[NDArray[np.float64], NDArray[np.uint32]]:
+    """The points and triangles (none of clouds) of several shapes as those of one, as the core takes them."""
     points, triangles, count = [], [], 0
     for shape in shapes:
         x = shape.positions if isinstance(shape, Shape) else as_points("shapes", shape, dimension)
         if isinstance(shape, Shape) and shape.faces is not None:
-            triangles.append(as_triangles(shape.faces, len(x)) + count)
+            triangles.append(as_indices(shape.faces, len(x)) + np.uint32(count))
         points.append(x)
         count += len(x)
-    return np.concatenate(points), np.concatenate(triangles) if triangles else None
+    return np.concatenate(points), np.concatenate([np.empty((0, 3), dtype=np.uint32), *triangles])

@@ -23,7 +23,6 @@ def moved(here):
 
 
 @pytest.mark.parametrize("options", [QUICK, ("--weights", "inverse-distance"), ("--weights", "shape-aware")])
-@pytest.mark.usefixtures("brief_training")
 def test_a_saved_map_deforms_as_the_run_that_fits(run, here, moved, options):
     settings = (*options, "--temperature", "0.8", "--transform", "similarity", "--handles", "0.5")
     ran = run(*FIT, *settings)

@@ -29,9 +29,6 @@ EXTRAS: dict[str, list[tuple[list[str], str]]] = {
         (["demo", "-o", "out"], "out/chair.png"),
         (["render", "chair.obj", "-o", "drawn.png"], "drawn.png"),
     ],
-    "shape-aware": [
-        (["deform", "chair.obj", "--points", "chair.points.json", "--weights", "shape-aware", "-o", "b.obj"], "b.obj"),
-    ],
 }
 # How pip reaches its index here.
 FOR_PIP = {

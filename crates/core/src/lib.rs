@@ -4,7 +4,7 @@
 //!
 //! | folder | what |
 //! |---|---|
-//! | `weights` | weight functions: what each says of a point, before the softmax (inverse distance, a trained network) |
+//! | `weights` | weight functions: what each says of a point, before the softmax (inverse distance, a trained network; what a shape teaches it) |
 //! | [`softmax`] | logits at a temperature -> weights, and the form of them that stays accurate however small T is |
 //! | `mls` | weights and moved control points -> a rigid, similarity or affine map a point |
 //! | `deformer` | joins them: points bound to weights once, deformed many times |
@@ -39,5 +39,6 @@ pub use machine::{memory, progress};
 pub use mls::{best_rotation, Transform, ANCHOR_WEIGHT, RIDGE};
 pub use probe::{places, Look, Probe, PLACES};
 pub use weights::inverse_distance::InverseDistance;
-pub use weights::network::{train, Layer, Network, Samples, Schedule, Trained, Training};
+pub use weights::network::{train, Layer, Network, Schedule, Trained, Training};
+pub use weights::shape_graph::{labels, Labels, Shape};
 pub use weights::Weights;

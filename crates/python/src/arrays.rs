@@ -3,7 +3,7 @@
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use neuralmls_core::Frame;
+use neuralmls_core::{Frame, Shape};
 
 use crate::errors::from_core;
 
@@ -25,4 +25,11 @@ pub(crate) fn frame(bounds: Option<PyReadonlyArray2<'_, f64>>, p: &[f64], dim: u
     let corners = bounds.as_slice()?;
     let (low, high) = corners.split_at(bounds.shape()[1]);
     Frame::of_box(low, high).map_err(|error| from_core(error, None))
+}
+
+/// A shape as Python hands it over: points n x d, and triangles f x 3, none of a cloud.
+pub(crate) type GivenShape<'py> = (PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, u32>);
+
+pub(crate) fn as_shape<'a>((x, faces): &'a GivenShape<'_>) -> PyResult<Shape<'a>> {
+    Ok(Shape { x: x.as_slice()?, faces: faces.as_slice()?.as_chunks::<3>().0 })
 }

@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::arrays::table;
+use crate::arrays::{as_shape, table, GivenShape};
 use crate::control_points::{raised, ControlPoints};
 use crate::deformer::Deformer;
 use crate::handles::Handles;
@@ -110,15 +110,18 @@ impl Session {
         table(py, aim.targets, self.0.points.dim())
     }
 
-    /// Fits the weights: in the session's frame, else in the box `bounds`, else in that of the control points.
+    /// Fits the weights: in the session's frame, else in the box `bounds`, else in that of the control points; `shape`: points n x d and
+    /// triangles f x 3, for weights that learn from them.
     fn fit(
         &self,
         py: Python<'_>,
         bounds: Option<PyReadonlyArray2<'_, f64>>,
+        shape: Option<GivenShape<'_>>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Map> {
         let bounds = self::bounds(bounds, self.0.points.dim())?;
-        run_session(py, progress, |report| self.0.fit(bounds.as_ref(), report)).map(Map)
+        let shape = shape.as_ref().map(as_shape).transpose()?;
+        run_session(py, progress, |report| self.0.fit(bounds.as_ref(), shape, report)).map(Map)
     }
 }
 

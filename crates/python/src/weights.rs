@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use neuralmls_core::{Frame, Layer, Network, Samples, Schedule, Trained, Training};
+use neuralmls_core::{Frame, Layer, Network, Schedule, Trained, Training};
 use neuralmls_session::Settings;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::arrays::{frame, table};
+use crate::arrays::{as_shape, frame, table, GivenShape};
 use crate::errors::{argument, from_core, from_session};
 use crate::progress::{run, run_session};
 
@@ -58,46 +58,23 @@ impl Weights {
 
 #[pymethods]
 impl Weights {
-    /// Of control points alone; the settings as JSON, `{"weights": {...}}` of a session file.
+    /// The settings as JSON, `{"weights": {...}}` of a session file; `shape`: points n x d and triangles f x 3 (none of a cloud), for weights
+    /// that learn from them. Without a box it is that of the shape, else of the control points.
     #[staticmethod]
     fn fitted(
         py: Python<'_>,
         p: PyReadonlyArray2<'_, f64>,
         bounds: Option<PyReadonlyArray2<'_, f64>>,
+        shape: Option<GivenShape<'_>>,
         settings: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Weights> {
         let (dim, p) = (p.shape()[1], p.as_slice()?);
-        let frame = frame(bounds, p, dim)?;
+        let shape = shape.as_ref().map(as_shape).transpose()?;
+        let frame = frame(bounds, shape.map_or(p, |shape| shape.x), dim)?;
         let settings = Settings::default().with_text(settings).map_err(|error| from_session(error, None))?;
-        run_session(py, progress, |report| settings.weights.fit(p, dim, frame, report)).map(Weights::of)
-    }
-
-    /// Taught by samples of a shape with soft labels (k x m), of which a step looks at `batch`.
-    #[staticmethod]
-    #[allow(clippy::too_many_arguments)]
-    fn shape_aware(
-        py: Python<'_>,
-        p: PyReadonlyArray2<'_, f64>,
-        bounds: Option<PyReadonlyArray2<'_, f64>>,
-        x: PyReadonlyArray2<'_, f64>,
-        labels: PyReadonlyArray2<'_, f32>,
-        batch: usize,
-        softness: f32,
-        width: usize,
-        steps: usize,
-        rate: f64,
-        seed: u64,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<Weights> {
-        let (dim, p) = (p.shape()[1], p.as_slice()?);
-        let frame = frame(bounds, p, dim)?;
-        let training = Training { width, schedule: Schedule::Cosine(steps), rate, seed, fourier_sigma: None };
-        let samples = Samples { x: x.as_slice()?, labels: labels.as_slice()?, batch };
-        run(py, progress, |report| {
-            neuralmls_core::Weights::shape_aware(p, dim, frame, samples, softness, &training, report)
-        })
-        .map(Weights::of)
+        run_session(py, progress, |report| settings.weights.fit(p, dim, frame, shape, report))
+            .map(Weights::of)
     }
 
     /// A network of given parameters: three (weight, bias), and the frequencies of Fourier features (0 rows without).

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use neuralmls_core::{
-    progress::Progress, Aim, Deformed, Deformer, Frame, Handles, PointTree, Pose, Trained, Transform, Weights,
+    progress::Progress, Aim, Deformed, Deformer, Frame, Handles, PointTree, Pose, Shape, Trained, Transform,
+    Weights,
 };
 
 use crate::{Bounds, Error, HandlesSetting, Session};
@@ -17,7 +18,7 @@ use crate::{Bounds, Error, HandlesSetting, Session};
 /// use neuralmls_session::{read, WeightsSettings};
 /// let mut session = read(b"name,x,y,target_x,target_y\na,0,0,0,0\nb,1,0,0,1\n", "points.csv").unwrap().session;
 /// session.settings.weights = WeightsSettings::InverseDistance { alpha: 1.0, epsilon: 0.0 };
-/// let map = session.fit(None, &mut |_| true).unwrap();
+/// let map = session.fit(None, None, &mut |_| true).unwrap();
 /// let moved = map.at(&[0.5, 0.0], &mut |_| true).unwrap(); // half of the way, turned by a quarter
 /// assert!((moved[0] - 0.0).abs() < 1e-9 && (moved[1] - 0.5).abs() < 1e-9);
 /// ```
@@ -30,11 +31,16 @@ pub struct Map {
 
 impl Session {
     /// Fits the weights to the control points: in the session's own frame, else in `bounds`, the box around the shapes, else in the box of
-    /// the control points.
+    /// the control points. `shape` is what shape-aware weights learn from: all points and faces of the shapes.
     ///
     /// # Errors
-    /// Where a setting is out of its range, a box has no size; for shape-aware weights, which need a shape: [`Map::of`] takes them.
-    pub fn fit(&self, bounds: Option<&Bounds>, progress: &mut Progress<'_>) -> Result<Map, Error> {
+    /// Where a setting is out of its range, a box has no size; for shape-aware weights without a shape.
+    pub fn fit(
+        &self,
+        bounds: Option<&Bounds>,
+        shape: Option<Shape<'_>>,
+        progress: &mut Progress<'_>,
+    ) -> Result<Map, Error> {
         self.settings.check()?;
         let mut session = self.clone();
         session.frame = self.frame.clone().or_else(|| bounds.cloned());
@@ -43,7 +49,7 @@ impl Session {
             Some(bounds) => bounds.frame(dim)?,
             None => Frame::around(&p, dim),
         };
-        Map::of(session, self.settings.weights.fit(&p, dim, frame, progress)?)
+        Map::of(session, self.settings.weights.fit(&p, dim, frame, shape, progress)?)
     }
 }
 

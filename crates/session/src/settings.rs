@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use neuralmls_core::progress::Progress;
-use neuralmls_core::{Frame, InverseDistance, Schedule, Training, Weights};
+use neuralmls_core::{Frame, InverseDistance, Schedule, Shape, Training, Weights};
 
 use crate::error::Error;
 use crate::text::number;
@@ -96,6 +96,7 @@ impl WeightsSettings {
         p: &[f64],
         dim: usize,
         frame: Frame,
+        shape: Option<Shape<'_>>,
         progress: &mut Progress<'_>,
     ) -> Result<Weights, Error> {
         self.check()?;
@@ -108,8 +109,11 @@ impl WeightsSettings {
             WeightsSettings::InverseDistance { alpha, epsilon } => {
                 Ok(Weights::InverseDistance(InverseDistance::new(p, dim, frame, alpha, epsilon)?))
             }
-            WeightsSettings::ShapeAware { .. } => {
-                Err(Error::argument("shape-aware weights are not fitted here yet: `neuralmls deform` and the Python package take this session"))
+            WeightsSettings::ShapeAware { seed } => {
+                let shape = shape.ok_or_else(|| {
+                    Error::argument("shapes: shape-aware weights need at least one shape to learn from")
+                })?;
+                Ok(Weights::shape_aware(p, dim, frame, shape, seed, progress)?)
             }
         }
     }

@@ -27,7 +27,7 @@ fn classic() -> WeightsSettings {
 
 fn fitted(session: &Session) -> Map {
     let bounds = Bounds::new(vec![-1.0; 3], vec![1.0; 3], 3).unwrap();
-    session.fit(Some(&bounds), &mut |_| true).unwrap()
+    session.fit(Some(&bounds), None, &mut |_| true).unwrap()
 }
 
 fn places() -> Vec<f64> {
@@ -65,7 +65,7 @@ fn a_session_keeps_the_frame_in_which_it_was_fitted() {
     assert_eq!((frame.min, frame.max), (vec![-1.0; 3], vec![1.0; 3]));
     // Fitted again for another shape it is the same map of space.
     let other = Bounds::new(vec![-9.0; 3], vec![9.0; 3], 3).unwrap();
-    let again = map.session().fit(Some(&other), &mut |_| true).unwrap();
+    let again = map.session().fit(Some(&other), None, &mut |_| true).unwrap();
     assert_eq!(again.weights(), map.weights());
 }
 
@@ -125,7 +125,7 @@ fn what_a_file_cannot_hold_is_what_is_reported() {
     list[0].target[0] += 0.05;
     let mut session = Session::new(ControlPoints::new(3, list).unwrap());
     session.settings.weights = classic();
-    let map = session.fit(None, &mut |_| true).unwrap();
+    let map = session.fit(None, None, &mut |_| true).unwrap();
     let round = |x: &[f64]| x.iter().map(|c| f64::from(*c as f32)).collect::<Vec<_>>();
     let held = Held { format: "PLY", round: &round, step: 0.5 };
     let report = map.report(&map.aim().unwrap(), Some(&held)).unwrap();
@@ -155,7 +155,7 @@ fn advice_names_a_fold_and_who_is_about_it() {
     let mut session = Session { points: p.points.moved("b", &[0.5, 0.0]).unwrap(), ..p };
     session.points = session.points.moved("c", &[-0.5, 0.0]).unwrap();
     session.settings.weights = classic();
-    let map = session.fit(None, &mut |_| true).unwrap();
+    let map = session.fit(None, None, &mut |_| true).unwrap();
     let x: Vec<f64> = (0..1000).flat_map(|i| [f64::from(i % 37) / 36.0, f64::from(i / 37) / 27.0]).collect();
     let found = map.advise(&map.probe(&x, &[]).unwrap(), &mut || None).unwrap();
     let fold = found.iter().find(|advice| advice.kind == "folds").unwrap();
@@ -195,6 +195,7 @@ fn a_map_is_no_file_of_control_points_and_is_called_what_it_is() {
 
 #[test]
 fn shape_aware_weights_are_refused_where_no_shape_is_known() {
-    let error = session(WeightsSettings::ShapeAware { seed: 0 }).fit(None, &mut |_| true).err().unwrap();
-    assert!(error.message.contains("shape-aware weights are not fitted here yet"), "{error}");
+    let error =
+        session(WeightsSettings::ShapeAware { seed: 0 }).fit(None, None, &mut |_| true).err().unwrap();
+    assert!(error.message.contains("shape-aware weights need at least one shape to learn from"), "{error}");
 }

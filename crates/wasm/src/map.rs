@@ -1,7 +1,7 @@
 //! Fitted sessions, and the points of a shape bound to them.
 
 use js_sys::{Array, Float32Array, Float64Array, Function};
-use neuralmls_core::{Deformer, PointTree, Probe};
+use neuralmls_core::{Deformer, PointTree, Probe, Shape};
 use wasm_bindgen::prelude::*;
 
 use crate::session::Session;
@@ -31,7 +31,8 @@ impl Points {
     /// Where the control points have another dimension, or the points no size.
     pub fn train(&self, session: &Session, tell: &Function) -> Result<Map, JsError> {
         let bounds = neuralmls_session::Bounds::around(&self.x, self.dim).map_err(refused)?;
-        let map = session.session().fit(Some(&bounds), &mut reporter(tell)).map_err(refused)?;
+        let shape = Shape { x: &self.x, faces: &self.faces };
+        let map = session.session().fit(Some(&bounds), Some(shape), &mut reporter(tell)).map_err(refused)?;
         Ok(Map(map))
     }
 

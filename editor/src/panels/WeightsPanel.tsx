@@ -6,10 +6,9 @@ import { useApp, useAppState } from "./useStore.ts";
 
 const KINDS: readonly { value: WeightsKind; label: string; title: string }[] = [
   { value: "neural", label: "Neural", title: "A network that is trained on the control points" },
+  { value: "shape-aware", label: "Shape-aware", title: "A network that is trained on the shape too: parts side by side move apart" },
   { value: "inverse-distance", label: "Inverse distance", title: "1 / (d^(2 alpha) + epsilon), as in classic MLS" },
 ];
-/** Shown where a session asks for it: it is not fitted here. */
-const SHAPE_AWARE = { value: "shape-aware", label: "Shape-aware", title: "A network that is trained on the shape too" } as const;
 
 const MAPS: readonly { value: Transform; label: string; title: string }[] = [
   { value: "rigid", label: "Rigid", title: "Parts turn and move" },
@@ -21,11 +20,10 @@ export function WeightsPanel() {
   const app = useApp();
   const { settings } = useAppState().session;
   const { neural, "inverse-distance": inverse } = settings.weights;
-  const kinds = settings.kind === "shape-aware" ? [...KINDS, SHAPE_AWARE] : KINDS;
   const seal = (): void => app.history.seal();
   return (
     <Section title="Weights">
-      <Segmented label="Weight function" value={settings.kind} options={kinds} onChange={(kind) => app.do(set("kind", kind))} />
+      <Segmented label="Weight function" value={settings.kind} options={KINDS} onChange={(kind) => app.do(set("kind", kind))} />
       <Slider
         label="Temperature"
         title="Lower: parts move more apart from each other; higher: more together"

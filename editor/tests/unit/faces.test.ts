@@ -20,21 +20,26 @@ const chair = join(samples, "chair.obj");
 const folder = mkdtempSync(join(tmpdir(), "faces-"));
 afterAll(() => rmSync(folder, { recursive: true }));
 
-// The browser does not fit weights that know the shape yet.
 const kindOf = ({ settings }: Face): string => settings.weights?.kind ?? "neural";
-const fitted = faces.sessions.filter((session) => kindOf(session) !== "shape-aware");
 
-/** Of the box. The browser's processor rounds the training otherwise, and a low temperature sharpens that: four are beyond, by so much at most. */
+/**
+ * Of the box. The browser's processor rounds the training otherwise, and a low temperature sharpens that: four are beyond, by so much at most.
+ * Shape-aware weights are trained for a thousand steps at a large rate, from which rounding grows a thousandfold more; a saved map has none of it.
+ */
 const AGREE = 1e-6;
 const BEYOND: Record<string, number> = {
   "exact, narrow network": 2e-6,
   "Fourier features, another rate": 4e-6,
   "T 0.3, oriented": 4e-6,
   "T 0.1": 8e-6,
+  "shape-aware": 2.5e-3,
+  "shape-aware, soft, T 2, similarity": 1e-3,
+  "shape-aware, exact, oriented": 1.5e-3,
+  "shape-aware, affine, by half": 1e-3,
 };
 const silent = (): void => undefined;
 
-test.each(fitted)("$name", { timeout: 60_000 }, ({ name, settings, frame, moved }) => {
+test.each(faces.sessions)("$name", { timeout: 60_000 }, ({ name, settings, frame, moved }) => {
   const control_points = faces.control_points.map((point) => ({ ...point, ...moved[point.name] }));
   const text = JSON.stringify({ format: "neuralmls-control-points", version: 2, control_points, settings, ...(frame && { frame }) });
   const [file, told] = [join(folder, "session.json"), join(folder, "told.obj")];
@@ -52,7 +57,7 @@ test.each(fitted)("$name", { timeout: 60_000 }, ({ name, settings, frame, moved 
   expect(difference(there, vertices(Buffer.from(bytes).toString()))).toBeLessThan(BEYOND[name] ?? AGREE);
 });
 
-test("all weights that the browser has are among them", () => {
-  expect(new Set(fitted.map(kindOf))).toEqual(new Set(["neural", "inverse-distance"]));
-  expect(fitted.length).toBeGreaterThanOrEqual(16);
+test("all weights are among them", () => {
+  expect(new Set(faces.sessions.map(kindOf))).toEqual(new Set(["neural", "shape-aware", "inverse-distance"]));
+  expect(faces.sessions).toHaveLength(20);
 });

@@ -52,7 +52,7 @@ class InverseDistanceWeights(Weights):
         p = as_control_points(control_points)
         box = None if bounds is None else as_box(bounds, p.shape[1])
         settings = changes_of(self._kind, {"alpha": alpha, "epsilon": epsilon})
-        self._core = _core.Weights.fitted(p, box, settings, None)
+        self._core = _core.Weights.fitted(p, box, None, settings, None)
 
     @property
     def alpha(self) -> float:

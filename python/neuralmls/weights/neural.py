@@ -67,4 +67,4 @@ class NeuralWeights(NetworkWeights):
         p = as_control_points(control_points)
         box = None if bounds is None else as_box(bounds, p.shape[1])
         parameters = {"seed": seed, "width": width, "steps": steps, "rate": rate, "fourier_sigma": fourier_sigma}
-        return cls._of(_core.Weights.fitted(p, box, changes_of(cls._kind, parameters), progress))
+        return cls._of(_core.Weights.fitted(p, box, None, changes_of(cls._kind, parameters), progress))

@@ -12,8 +12,6 @@ import neuralmls as nm
 from neuralmls_research.experiments.methods import METHODS
 from neuralmls_research.metrics import measure
 
-pytestmark = pytest.mark.usefixtures("brief_training")
-
 MOVED = """\
 name,x,y,z,target_x,target_y,target_z
 foot,0.5,0,0.5,0.5,0,0.5

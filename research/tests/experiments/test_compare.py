@@ -11,8 +11,6 @@ from neuralmls_research.experiments.compare import attempt
 from neuralmls_research.experiments.methods import METHODS, Surface, classic, kpd, neural, of_shapes, with_settings
 from neuralmls_research.metrics import folded_places
 
-pytestmark = pytest.mark.usefixtures("brief_training")
-
 OF_SURFACES = ("arap", "arap-from-fit", "biharmonic", "biharmonic-displacements")
 
 

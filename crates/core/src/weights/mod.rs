@@ -5,12 +5,14 @@
 
 pub(crate) mod inverse_distance;
 pub(crate) mod network;
+pub(crate) mod shape_graph;
 
 use crate::error::Error;
 use crate::geometry::{Frame, PointTree};
 use crate::machine::progress::Progress;
 use inverse_distance::InverseDistance;
-use network::{fit, Samples, Trained, Training};
+use network::{fit, Trained, Training};
+use shape_graph::Shape;
 
 /// A weight function of control points.
 ///
@@ -47,22 +49,20 @@ impl Weights {
         fit(p, None, dim, frame, training, progress).map(Weights::Neural)
     }
 
-    /// Trains weights of the control points `p` (m x dim) that know the shape by `samples` of it, whose labels are softened: they are the
-    /// weights at the temperature `softness`, and what the network makes of them is sharpened as much.
+    /// Trains weights of the control points `p` (m x dim), in `frame`, that know `shape`: besides the control points the network is taught
+    /// places all over it, where it is to give `w_i ~ h_i^(2.5 s) / E_i^(6 (1 - s))` (`shape_graph`).
     ///
     /// # Errors
-    /// As [`Weights::neural`], and where labels are no probabilities.
+    /// As [`Weights::neural`]; where the shape has no finite points, or a face names none; [`Error::Memory`].
     pub fn shape_aware(
         p: &[f64],
         dim: usize,
         frame: Frame,
-        samples: Samples<'_>,
-        softness: f32,
-        training: &Training,
+        shape: Shape<'_>,
+        seed: u64,
         progress: &mut Progress<'_>,
     ) -> Result<Weights, Error> {
-        let trained = fit(p, Some(samples), dim, frame, training, progress)?;
-        Ok(Weights::ShapeAware(Trained { network: trained.network.sharpened(softness), ..trained }))
+        shape_graph::fit(p, dim, frame, shape, seed, progress).map(Weights::ShapeAware)
     }
 
     /// Its name in every face and file.
@@ -133,9 +133,8 @@ mod tests {
         let (p, x) = ([0.0, 0.0, 1.0, 0.0, 0.0, 1.0], [0.25, 0.5, 1.0, 1.0]);
         let training = Training { width: 16, ..Training::default() };
         let neural = Weights::neural(&p, 2, Frame::IDENTITY, &training, &mut |_| true).unwrap();
-        let samples = Samples { x: &x, labels: &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0], batch: 2 };
-        let aware =
-            Weights::shape_aware(&p, 2, Frame::IDENTITY, samples, 2.0, &training, &mut |_| true).unwrap();
+        let shape = Shape { x: &x, faces: &[] };
+        let aware = Weights::shape_aware(&p, 2, Frame::IDENTITY, shape, 0, &mut |_| true).unwrap();
         let function = InverseDistance::new(&p, 2, Frame::IDENTITY, 1.0, 0.0).unwrap();
         let direct = function.logits(&x, &mut |_| true).unwrap();
         let distance = Weights::InverseDistance(function);

@@ -6,9 +6,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csc_array, csr_array, triu
+from scipy.sparse.csgraph import dijkstra
+from scipy.sparse.linalg import splu
+from surface_links import CELL, Array, Indices, nearest_to, surface_links
 
 from neuralmls.placement import farthest_of
-from neuralmls.weights.surface_links import CELL, Array, Indices, nearest_to, scipy, surface_links
 
 MOST_SPREAD = 8192  # nodes that `spread` chooses from: every so many-th of more
 MET = 1.5  # times as far as the nearest: the nodes at which a walk meets a control point
@@ -36,13 +39,6 @@ class SurfaceGraph:
     x : (n, d) float64
         Vertices, in halves of the shape's longest side.
     faces : (f, 3) integers, or None for a cloud of points
-
-    Raises
-    ------
-    ArgumentError
-        A face names no vertex.
-    NeuralMLSError
-        SciPy is not installed.
 
     Examples
     --------
@@ -87,13 +83,11 @@ class SurfaceGraph:
         (a, b), conducts = self._links.ends.T, self._links.conductances
         values = np.concatenate([-conducts, -conducts, conducts, conducts, firm])
         rows, columns = np.concatenate([a, b, a, b, nodes]), np.concatenate([b, a, a, b, nodes])
-        laplacian = scipy("sparse").csc_array((values, (rows, columns)), shape=(count, count))
+        laplacian = csc_array((values, (rows, columns)), shape=(count, count))
         sources = np.zeros((count, m))
         np.add.at(sources, (nodes, which), firm)
         # Symmetric and diagonally dominant: no pivots are needed.
-        factors = scipy("sparse.linalg").splu(
-            laplacian, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-        )
+        factors = splu(laplacian, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         return np.asarray(factors.solve(sources))
 
     def reach(self, p: Array, *, around: float = AROUND) -> Reach:
@@ -107,8 +101,8 @@ class SurfaceGraph:
         a, b = links.T
         ends = np.concatenate([self.nodes, p])
         lengths = np.maximum(np.linalg.norm(ends[a] - ends[b], axis=1), 1e-12)  # a zero would be no link
-        graph = scipy("sparse").csr_array((lengths, (a, b)), shape=(count + m, count + m))
-        far, _, source = scipy("sparse.csgraph").dijkstra(
+        graph = csr_array((lengths, (a, b)), shape=(count + m, count + m))
+        far, _, source = dijkstra(
             graph, directed=False, indices=np.arange(count, count + m), min_only=True, return_predecessors=True
         )
         # The shortest path to another of them crosses once from the nodes nearest to one to those nearest to the other.
@@ -138,6 +132,6 @@ class SurfaceGraph:
 def _two_steps(links: Indices, count: int) -> Indices:
     """The links, and one between the ends of each two in succession: with them, paths need not zigzag."""
     both = np.concatenate([links, links[:, ::-1]])
-    steps = scipy("sparse").csr_array((np.ones(len(both), dtype=np.int32), both.T), shape=(count, count))
-    two = scipy("sparse").triu(steps @ steps + steps, k=1)
+    steps = csr_array((np.ones(len(both), dtype=np.int32), both.T), shape=(count, count))
+    two = triu(steps @ steps + steps, k=1)
     return np.stack(two.nonzero(), axis=1).astype(np.int64)

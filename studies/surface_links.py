@@ -10,15 +10,13 @@ At last all nodes of one connected patch in a small cell become one: a fine mesh
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-
-from neuralmls.arrays import as_triangles
-from neuralmls.errors import NeuralMLSError
-from neuralmls.extras import extra
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -65,12 +63,6 @@ def surface_links(x: Array, faces: NDArray[Any] | None) -> Links:
         Vertices, in halves of the shape's longest side.
     faces : (f, 3) integers, or None
 
-    Raises
-    ------
-    ArgumentError
-        A face names no vertex.
-    NeuralMLSError
-        SciPy is not installed.
 
     Examples
     --------
@@ -90,25 +82,9 @@ def surface_links(x: Array, faces: NDArray[Any] | None) -> Links:
     return _in_cells(links)
 
 
-def scipy(module: str) -> Any:
-    """Return a module of SciPy.
-
-    Raises
-    ------
-    NeuralMLSError
-        SciPy is not installed.
-    """
-    try:
-        return import_module(f"scipy.{module}")
-    except ImportError as error:
-        raise NeuralMLSError(
-            f"shape-aware weights need SciPy, which is not installed: {extra('shape-aware')}"
-        ) from error
-
-
 def nearest_to(nodes: Array) -> Any:
     """Return the tree of some nodes, that finds the nearest."""
-    return scipy("spatial").cKDTree(nodes)
+    return cKDTree(nodes)
 
 
 def _merged(x: Array, faces: NDArray[Any] | None) -> tuple[Array, Indices]:
@@ -116,7 +92,7 @@ def _merged(x: Array, faces: NDArray[Any] | None) -> tuple[Array, Indices]:
     nodes, which = np.unique(np.round(x, 7) + 0.0, axis=0, return_inverse=True)
     if faces is None or np.size(faces) == 0:
         return nodes, np.empty((0, 3), dtype=np.int64)
-    return nodes, which.reshape(-1)[as_triangles(faces, len(x))].astype(np.int64)
+    return nodes, which.reshape(-1)[faces].astype(np.int64)
 
 
 def _divided(x: Array, faces: Indices) -> tuple[Array, Indices]:
@@ -164,8 +140,8 @@ def _summed(keys: Indices, values: Array, count: int) -> tuple[Indices, Array]:
 
 def _connected(ends: Indices, count: int) -> NDArray[np.int32]:
     """The number of the connected component of each node."""
-    graph = scipy("sparse").csr_array((np.ones(len(ends), dtype=np.int8), ends.T), shape=(count, count))
-    return np.asarray(scipy("sparse.csgraph").connected_components(graph, directed=False)[1])
+    graph = csr_array((np.ones(len(ends), dtype=np.int8), ends.T), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1])
 
 
 def _components(links: Links) -> NDArray[np.int32]:

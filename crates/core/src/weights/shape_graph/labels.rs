@@ -1,0 +1,183 @@
+//! What a network is taught: samples of the shape, and the weights there.
+
+use super::graph::links_of;
+use super::near::Near;
+use super::paths::reach;
+use super::walks::first_met;
+use super::{squared, Position};
+use crate::check::check_points;
+use crate::error::Error;
+use crate::geometry::{placement, Frame};
+use crate::machine::progress::{report, Progress};
+use crate::weights::network::{self, Samples, Schedule, Trained, Training};
+
+/// Of what walks say.
+const POWER: f64 = 2.5;
+/// Logits below the largest by at most this are kept.
+const KEPT: f64 = 8.0;
+/// Lower ones fall as this times a logarithm: weights as a power, which a network can learn.
+const TAIL: f64 = 4.0;
+/// Of the straight-line distance, where no control point governs.
+const EXPONENT: f64 = 6.0;
+/// Of the spacing of the control points: how far along the shape one governs it.
+const REACH: f64 = 0.75;
+/// The network learns the weights to the power 1/2: what it gives is then sharpened as much.
+const SOFTNESS: f32 = 2.0;
+const SAMPLES: usize = 2048;
+/// Nodes from which samples are chosen: every so many-th of more.
+const CANDIDATES: usize = 8192;
+/// Samples a step.
+const BATCH: usize = 128;
+const WIDTH: usize = 256;
+const STEPS: usize = 1000;
+const RATE: f64 = 8e-3;
+/// A distance: what is nearer is on the control point.
+const LEAST: f64 = 1e-6;
+/// Of walks: fewer are rounding.
+const LEAST_SHARE: f64 = 1e-12;
+/// Of the time of a fit: what goes before the training.
+const BEFORE: f64 = 0.25;
+
+/// A shape to learn from.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape<'a> {
+    /// Its points, n x dim.
+    pub x: &'a [f64],
+    /// Its triangles: any, of any quality, connected or not. Points without a triangle are linked to their nearest.
+    pub faces: &'a [[u32; 3]],
+}
+
+/// What a shape says of its control points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Labels {
+    /// Places spread over the shape, k x dim.
+    pub x: Vec<f64>,
+    /// The logits there, k x m; the largest of a place is 0.
+    pub logits: Vec<f64>,
+}
+
+/// Trains a network on the control points `p` and the labels of `shape`.
+///
+/// # Errors
+/// As [`labels`] and [`network::fit`].
+pub(crate) fn fit(
+    p: &[f64],
+    dim: usize,
+    frame: Frame,
+    shape: Shape<'_>,
+    seed: u64,
+    progress: &mut Progress<'_>,
+) -> Result<Trained, Error> {
+    let Labels { x, logits } = labels(p, dim, frame, shape, &mut |done| progress(BEFORE * done))?;
+    let labels = softened(&logits, p.len() / dim);
+    let samples = Samples { x: &x, labels: &labels, batch: BATCH };
+    let schedule = Schedule::Cosine(STEPS);
+    let training = Training { width: WIDTH, schedule, rate: RATE, seed, fourier_sigma: None };
+    let mut rest = |done: f64| progress(BEFORE + (1.0 - BEFORE) * done);
+    let trained = network::fit(p, Some(samples), dim, frame, &training, &mut rest)?;
+    Ok(Trained { network: trained.network.sharpened(SOFTNESS), ..trained })
+}
+
+/// Places of a shape, and the logits of the control points `p` (m x dim) there.
+///
+/// # Errors
+/// [`Error::Cancelled`], [`Error::Memory`]; where there are no finite points or control points, or a face names no point.
+pub fn labels(
+    p: &[f64],
+    dim: usize,
+    frame: Frame,
+    shape: Shape<'_>,
+    progress: &mut Progress<'_>,
+) -> Result<Labels, Error> {
+    if check_points("control points", p, dim)? == 0 {
+        return Err(Error::argument("control points", "expected at least one, found none"));
+    }
+    let n = check_points("x", shape.x, dim)?;
+    if n == 0 {
+        return Err(Error::argument("x", "expected at least one point, found none"));
+    }
+    if let Some(face) = shape.faces.iter().find(|face| face.iter().any(|&corner| corner as usize >= n)) {
+        let found = face.map(|corner| corner.to_string()).join(", ");
+        return Err(Error::argument("faces", format!("expected vertices 0 to {}, found ({found})", n - 1)));
+    }
+    report(progress, 0.0)?;
+    let entered = |x: &[f64]| -> Vec<Position> { x.chunks_exact(dim).map(|x| inside(&frame, x)).collect() };
+    let (p, x) = (entered(p), entered(shape.x));
+    let links = links_of(&x, shape.faces);
+    report(progress, 0.6)?;
+    let near = Near::new(&links.nodes);
+    let along = reach(&links, &near, &p);
+    report(progress, 0.7)?;
+    let met = first_met(&links, &near, &p, &along)?;
+    report(progress, 0.9)?;
+    let chosen = spread(&links.nodes, progress)?;
+
+    let spacing = median(&along.apart);
+    let (mut places, mut logits) = (Vec::new(), Vec::new());
+    for node in chosen {
+        let share = (REACH * spacing / along.far[node].max(LEAST)).min(1.0).powi(4);
+        let of_node = &met[node * p.len()..][..p.len()];
+        logits.extend(logits_of(&links.nodes[node], &p, of_node, share));
+        let x = &links.nodes[node];
+        places.extend((0..dim).map(|k| x[k] * frame.half + frame.centre[k]));
+    }
+    report(progress, 1.0)?;
+    Ok(Labels { x: places, logits })
+}
+
+fn inside(frame: &Frame, x: &[f64]) -> Position {
+    let mut position = [0.0; 3];
+    for (k, c) in x.iter().enumerate() {
+        position[k] = (c - frame.centre[k]) / frame.half;
+    }
+    position
+}
+
+/// The logits of the control points `p` at the place `x`: of what walks say, a `share`; the rest is of the distance in space.
+fn logits_of(x: &Position, p: &[Position], met: &[f64], share: f64) -> Vec<f64> {
+    let logits: Vec<f64> = p
+        .iter()
+        .zip(met)
+        .map(|(p, met)| {
+            let straight = squared(x, p).sqrt().max(LEAST).ln();
+            share * POWER * met.max(LEAST_SHARE).ln() - (1.0 - share) * EXPONENT * straight
+        })
+        .collect();
+    let most = logits.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let tailed = |logit: f64| {
+        let below = most - logit;
+        -below.min(KEPT) - TAIL * ((below - KEPT).max(0.0) / TAIL).ln_1p()
+    };
+    logits.into_iter().map(tailed).collect()
+}
+
+/// Nodes spread evenly over the shape.
+fn spread(nodes: &[Position], progress: &mut Progress<'_>) -> Result<Vec<usize>, Error> {
+    let step = nodes.len().div_ceil(CANDIDATES);
+    let few: Vec<f64> = nodes.iter().step_by(step).flatten().copied().collect();
+    let mut told = |done: f64| progress(0.9 + 0.1 * done);
+    Ok(placement::farthest_of(&few, 3, SAMPLES, &mut told)?.into_iter().map(|at| at * step).collect())
+}
+
+fn median(of: &[f64]) -> f64 {
+    let mut sorted = of.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let (low, high) = (sorted[(sorted.len() - 1) / 2], sorted[sorted.len() / 2]);
+    if low == high {
+        low
+    } else {
+        (low + high) / 2.0
+    }
+}
+
+/// The weights at the temperature [`SOFTNESS`].
+fn softened(logits: &[f64], m: usize) -> Vec<f32> {
+    let mut labels = Vec::with_capacity(logits.len());
+    for logits in logits.chunks_exact(m) {
+        let most = logits.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let weights = logits.iter().map(|logit| ((logit - most) / f64::from(SOFTNESS)).exp());
+        let sum: f64 = weights.clone().sum();
+        labels.extend(weights.map(|weight| (weight / sum) as f32));
+    }
+    labels
+}

@@ -1,0 +1,139 @@
+//! Shortest paths along a shape. Dijkstra, "A note on two problems in connexion with graphs", 1959.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use super::links::Links;
+use super::near::Near;
+use super::{attached, squared, Position};
+
+/// So many times as far from a control point as the nearest: the nodes to which paths lead from it, for one in a body is not on one
+/// side of it only.
+const AROUND: f64 = 2.0;
+/// Such nodes.
+const MOST_AROUND: usize = 512;
+/// Two nodes in one place are so far from each other.
+const LEAST: f64 = 1e-12;
+
+/// Shortest paths along a shape.
+pub(super) struct Reach {
+    /// From each node to its nearest control point.
+    pub(super) far: Vec<f64>,
+    /// Which that is.
+    pub(super) nearest: Vec<u32>,
+    /// From each control point to the nearest other; infinite where there is none.
+    pub(super) apart: Vec<f64>,
+}
+
+/// The shortest paths from each node to the nearest of `p`, and between these. Those of a control point in the midst of a body lead
+/// straight to the surface around it.
+///
+/// Paths take two links at a time, straight from end to end: they need not zigzag.
+pub(super) fn reach(links: &Links, near: &Near, p: &[Position]) -> Reach {
+    let neighbours = Neighbours::new(links);
+    let count = links.nodes.len();
+    let (mut far, mut nearest) = (vec![f64::INFINITY; count], vec![u32::MAX; count]);
+    let mut apart = vec![f64::INFINITY; p.len()];
+    let around = attached(near, p, AROUND, MOST_AROUND);
+    let mut queue = BinaryHeap::new();
+    for (point, node, away) in &around {
+        let away = away.max(LEAST);
+        if away < far[*node as usize] {
+            (far[*node as usize], nearest[*node as usize]) = (away, *point);
+            queue.push(Reverse((Ordered(away), *node)));
+        }
+    }
+    let mut steps = Vec::new();
+    while let Some(Reverse((Ordered(away), node))) = queue.pop() {
+        if away > far[node as usize] {
+            continue;
+        }
+        neighbours.two_steps(links, node, &mut steps);
+        for &(other, length) in &steps {
+            if away + length < far[other as usize] {
+                (far[other as usize], nearest[other as usize]) = (away + length, nearest[node as usize]);
+                queue.push(Reverse((Ordered(away + length), other)));
+            }
+        }
+    }
+    // The shortest path to another of them crosses once from the nodes nearest to one to those nearest to the other.
+    let mut crosses = |a: u32, b: u32, whole: f64| {
+        if a != b {
+            for point in [a, b] {
+                apart[point as usize] = apart[point as usize].min(whole);
+            }
+        }
+    };
+    for (point, node, away) in around {
+        crosses(point, nearest[node as usize], away.max(LEAST) + far[node as usize]);
+    }
+    for node in 0..count as u32 {
+        let (own, away) = (nearest[node as usize], far[node as usize]);
+        // Only where a neighbour belongs to another.
+        neighbours.two_steps(links, node, &mut steps);
+        for &(other, length) in steps.iter().filter(|(other, _)| *other > node) {
+            crosses(own, nearest[other as usize], away + length + far[other as usize]);
+        }
+    }
+    Reach { far, nearest, apart }
+}
+
+/// The neighbours of each node.
+struct Neighbours {
+    starts: Vec<u32>,
+    others: Vec<u32>,
+}
+
+impl Neighbours {
+    fn new(links: &Links) -> Neighbours {
+        let mut starts = vec![0_u32; links.nodes.len() + 1];
+        links.ends.iter().flatten().for_each(|&end| starts[end as usize + 1] += 1);
+        (1..starts.len()).for_each(|node| starts[node] += starts[node - 1]);
+        let (mut next, mut others) = (starts.clone(), vec![0; 2 * links.ends.len()]);
+        for &[a, b] in &links.ends {
+            for (from, to) in [(a, b), (b, a)] {
+                others[next[from as usize] as usize] = to;
+                next[from as usize] += 1;
+            }
+        }
+        Neighbours { starts, others }
+    }
+
+    fn of(&self, node: u32) -> &[u32] {
+        &self.others[self.starts[node as usize] as usize..self.starts[node as usize + 1] as usize]
+    }
+
+    /// Each node within two links, once, and how far it is.
+    fn two_steps(&self, links: &Links, node: u32, steps: &mut Vec<(u32, f64)>) {
+        steps.clear();
+        let x = &links.nodes[node as usize];
+        for &one in self.of(node) {
+            steps.push((one, 0.0));
+            steps.extend(self.of(one).iter().map(|&two| (two, 0.0)));
+        }
+        steps.sort_unstable_by_key(|(other, _)| *other);
+        steps.dedup_by_key(|(other, _)| *other);
+        steps.retain(|(other, _)| *other != node);
+        for (other, length) in steps.iter_mut() {
+            *length = squared(x, &links.nodes[*other as usize]).sqrt().max(LEAST);
+        }
+    }
+}
+
+/// A finite distance, as a queue orders it.
+#[derive(Clone, Copy, PartialEq)]
+struct Ordered(f64);
+
+impl Eq for Ordered {}
+
+impl Ord for Ordered {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
+impl PartialOrd for Ordered {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}

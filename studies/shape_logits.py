@@ -1,0 +1,30 @@
+"""The logits of shape-aware weights in NumPy, without a network, with settings to choose (crates/core: shape_graph)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from surface_graph import SurfaceGraph
+
+Array = NDArray[np.float64]
+
+POWER = 2.5
+KEPT = 8.0  # logits below the largest by at most this are kept
+TAIL = 4.0  # lower ones fall as this times a logarithm: weights as a power, which a network can learn
+EXPONENT = 6.0  # of the straight-line distance, where no control point governs
+REACH = 0.75  # of the spacing of the control points: how far along the shape one governs it
+LEAST = 1e-6  # a distance, in halves of the shape's longest side: what is nearer is on the control point
+LEAST_SHARE = 1e-12  # of walks: fewer are rounding
+
+
+def shape_logits(
+    graph: SurfaceGraph, p: Array, *, power: float = POWER, kept: float = KEPT, reach: float = REACH
+) -> Array:
+    """Return the logits of the control points (m, d) at every node of a shape, (nodes, m); the largest is 0."""
+    along = graph.reach(p)
+    met = np.log(np.maximum(graph.first_met(p, along), LEAST_SHARE))
+    straight = np.log(np.maximum(np.linalg.norm(graph.nodes[:, None] - p, axis=2), LEAST))
+    share = np.minimum(1, reach * np.median(along.apart) / np.maximum(along.far, LEAST))[:, None] ** 4
+    logits = share * power * met - (1 - share) * EXPONENT * straight
+    below = logits.max(axis=1, keepdims=True) - logits
+    return np.asarray(-np.minimum(below, kept) - TAIL * np.log1p(np.maximum(below - kept, 0) / TAIL))
