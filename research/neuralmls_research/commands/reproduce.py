@@ -55,15 +55,11 @@ def reproduce(*, items: tuple[str, ...], output: Path, seeds: int, quiet: bool, 
     page, reports = run(selected, lab, stages.stage)
     if quiet:
         return
-    told = Counter(claim.verdict for report in reports.values() for claim in report.claims if not claim.ours)
+    told = Counter(claim.verdict for report in reports.values() for claim in report.claims)
     for item, report in reports.items():
         for sentence in report.missing:
             console.warning(f"{item.name}: {sentence}")
-    rows = [
-        (claim.verdict, f"our own check: {claim.paper}" if claim.ours else claim.paper, item.name)
-        for item, report in reports.items()
-        for claim in report.claims
-    ]
+    rows = [(claim.verdict, claim.paper, item.name) for item, report in reports.items() for claim in report.claims]
     console.table(["verdict", "claim", "item"], rows, file=sys.stdout)
     console.line(f"{page}: {', '.join(f'{count} {verdict}' for verdict, count in told.items())}", sys.stdout)
     console.line(f"{sum(stages.seconds.values()):.0f} seconds in all", sys.stdout)
