@@ -40,6 +40,12 @@ def test_a_category_of_figure_6_is_told_plainly(cases, verdict, told):
     assert "Laplacian" in claim.measure
 
 
+def test_a_category_without_a_shape_has_no_numbers():
+    claim = scatter._distortion("airplane", [])
+    assert claim.verdict == Verdict.UNTESTABLE
+    assert claim.measured == "Nothing: no such shape is here."
+
+
 def test_better_on_both_axes_is_told_from_a_trade():
     trade = Case("chair", "", {"laplacian": {NEURAL_LABEL: [3.0], CLASSIC_LABEL: [2.0]},
                                "error": {NEURAL_LABEL: [0.1], CLASSIC_LABEL: [0.2]}})  # fmt: skip

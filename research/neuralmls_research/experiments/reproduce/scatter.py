@@ -18,7 +18,6 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     narrow,
     numbers,
     ours,
-    spoken,
 )
 from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
 from neuralmls_research.experiments.reproduce.scatter_cases import (
@@ -32,6 +31,7 @@ from neuralmls_research.experiments.reproduce.scatter_cases import (
 )
 from neuralmls_research.experiments.reproduce.scatter_drawing import draw
 from neuralmls_research.experiments.reproduce.subjects import many
+from neuralmls_research.experiments.reproduce.words import span
 
 CATEGORIES = ("chair", "airplane", "car")  # the paper's
 LEAST = 3  # deformations of a category, below which it has no verdict
@@ -74,15 +74,11 @@ def run(lab: Lab) -> Report:
 
 def _distortion(category: str, cases: Sequence[Case]) -> Claim:
     ruling = verdicts.better_than_each([case.pairs("laplacian") for case in cases], LEAST)
-    classic = [case.against("laplacian", CLASSIC_LABEL) for case in cases]
-    ratios = [fmean(neural) / other for neural, other in classic] or [1.0]
     return Claim(
         paper=f"Figure 6, {category}s: neural weights distort less than the other methods.",
         measure="Mean change of the Laplacian's length, the figure's axis.",
         rule=ruling.rule,
-        measured=f"Less than {_against('laplacian', cases)}; neural / classic {spoken(ratios, '{:.2f}')}. Beside it, "
-        f"mean change of mean curvature: less than {_against('curvature', cases)}."
-        + (" The shapes are no shapes of the paper, but stand in." if any(case.ours for case in cases) else ""),
+        measured=_changes(cases) if cases else "Nothing: no such shape is here.",
         verdict=ruling.verdict,
         reader=verdicts.conclusion(
             ruling,
@@ -90,6 +86,17 @@ def _distortion(category: str, cases: Sequence[Case]) -> Claim:
             "It depends on the displacement, and on the method compared with: look at the rows.",
             "On this axis neural weights distort less than another method in no deformation of the category.",
         ),
+    )
+
+
+def _changes(cases: Sequence[Case]) -> str:
+    """What became of a category on both measures of distortion."""
+    classic = [case.against("laplacian", CLASSIC_LABEL) for case in cases]
+    ratios = [fmean(neural) / other for neural, other in classic]
+    return (
+        f"Less than {_against('laplacian', cases)}; neural / classic {span(ratios, '{:.2f}')}. Beside it, mean "
+        f"change of mean curvature: less than {_against('curvature', cases)}."
+        + (" The shapes are no shapes of the paper, but stand in." if any(case.ours for case in cases) else "")
     )
 
 
@@ -188,4 +195,4 @@ def _study() -> Claim:
 def _against(measure: str, cases: Sequence[Case]) -> str:
     """In how many cases neural weights have less than each other method of the paper."""
     here = [label for label in PAPERS if any(label in case.values[measure] for case in cases)]
-    return ", ".join(f"{label} in {wins(cases, measure, label)}" for label in here) or "nothing: no such shape is here"
+    return ", ".join(f"{label} in {wins(cases, measure, label)}" for label in here)
