@@ -13,8 +13,8 @@ from neuralmls_research.experiments.reproduce import line, verdicts
 from neuralmls_research.experiments.reproduce.drawing import CLASSIC, NEURAL, draw_weights, plots
 from neuralmls_research.experiments.reproduce.lab import Lab, classic_title
 from neuralmls_research.experiments.reproduce.line import BEFORE, TEMPERATURES, X, weights_on_line
-from neuralmls_research.experiments.reproduce.outcomes import spoken
 from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
+from neuralmls_research.experiments.reproduce.words import span
 
 Array = NDArray[np.float64]
 
@@ -146,8 +146,8 @@ def _claims(n: dict[str, Any]) -> list[Claim]:
             paper="Between displacements that only rise, classic weights waver; neural ones do not.",
             measure="What a curve goes down by in all, of the 10 that it is asked to rise by: affine, 1/d.",
             rule=waver.rule,
-            measured=f"Affine: neural {spoken(affine['neural'])}, classic {rival:.2f} (1/d²: "
-            f"{affine['classic_1/d^2'][0]:.2f}). Rigid: neural {spoken(shift['neural'], '{:.1g}')}, classic "
+            measured=f"Affine: neural {span(affine['neural'])}, classic {rival:.2f} (1/d²: "
+            f"{affine['classic_1/d^2'][0]:.2f}). Rigid: neural {span(shift['neural'], '{:.1g}')}, classic "
             f"{shift['classic_1/d'][0]:.2f} (1/d²: {shift['classic_1/d^2'][0]:.2f}).",
             verdict=waver.verdict,
             reader="Neural weights waver less, but not by a factor of ten: in an affine piece they overshoot a little "
@@ -160,7 +160,7 @@ def _claims(n: dict[str, Any]) -> list[Claim]:
             measure=f"The share of the line where the displacement is straight: its slope changes by less than "
             f"{STRAIGHT:g} a unit. Affine.",
             rule=smooth.rule,
-            measured=f"Neural {spoken(pieces['neural'], '{:.0%}')}, classic {pieces['classic_1/d'][0]:.0%} (1/d²: "
+            measured=f"Neural {span(pieces['neural'], '{:.0%}')}, classic {pieces['classic_1/d'][0]:.0%} (1/d²: "
             f"{pieces['classic_1/d^2'][0]:.0%}).",
             verdict=smooth.verdict,
             reader="Each pair of neighbours owns a straight piece; pieces join in short soft bends.",
@@ -169,8 +169,8 @@ def _claims(n: dict[str, Any]) -> list[Claim]:
             paper="The control points are approximated closely, though nothing forces an interpolation.",
             measure="The worst distance from a displacement asked for, of 10.",
             rule=close.rule,
-            measured=f"Affine: neural {spoken(error['affine']['neural'], '{:.1g}')}, classic "
-            f"{error['affine']['classic_1/d'][0]:.1g}. Rigid: neural {spoken(error['rigid']['neural'], '{:.1g}')}.",
+            measured=f"Affine: neural {span(error['affine']['neural'], '{:.1g}')}, classic "
+            f"{error['affine']['classic_1/d'][0]:.1g}. Rigid: neural {span(error['rigid']['neural'], '{:.1g}')}.",
             verdict=close.verdict,
             reader="After 500 steps on six control points the network has learned them.",
         ),

@@ -26,9 +26,9 @@ SHARE = 0.5  # of the weight at its own place, by which a control point counts a
 CAPTION = (
     "From left to right: control points on the shape; the network, which learns from them alone which is which (below, "
     "the chance that it gives each control point at its own place); what it says of each vertex of the control point "
-    "that moves furthest, its logit (colours from the least to the largest); the weight, which the softmax makes of the "
-    "logits (0 to 1); whose weight is largest, a colour for each control point; and what moving least squares makes of "
-    "the weights and the targets."
+    "that moves furthest, its logit (colours from the least to the largest); the weight, which the softmax makes of "
+    "the logits (0 to 1); whose weight is largest, a colour for each control point; and what moving least squares "
+    "makes of the weights and the targets."
 )
 
 
@@ -56,7 +56,7 @@ def run(lab: Lab) -> Report:
                 measure="The least weight that a control point has at its own place, after training.",
                 rule=learned.rule,
                 measured=f"Least over {len(p)} control points, by seed: "
-                f"{', '.join(f'{values.min():.2f}' for values in own)}. The weights of a vertex sum to 1 to {apart:.0e}.",
+                f"{', '.join(f'{values.min():.2f}' for values in own)}. A vertex's weights sum to 1 to {apart:.0e}.",
                 verdict=learned.verdict,
                 reader="The pipeline is as drawn: shape and targets are not part of the training.",
             )

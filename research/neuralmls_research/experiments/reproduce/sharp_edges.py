@@ -10,9 +10,10 @@ from neuralmls_research.experiments import methods
 from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.drawing import add_bar, draw_shapes
 from neuralmls_research.experiments.reproduce.lab import Lab, classic_title
-from neuralmls_research.experiments.reproduce.outcomes import SEED, STEPS, by_methods, group, spoken
+from neuralmls_research.experiments.reproduce.outcomes import SEED, STEPS, by_methods, group
 from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report, Table
 from neuralmls_research.experiments.reproduce.subjects import plain_chair
+from neuralmls_research.experiments.reproduce.words import span
 from neuralmls_research.metrics.triangles import normals
 
 Array = NDArray[np.float64]
@@ -75,7 +76,7 @@ def run(lab: Lab) -> Report:
 def _table(measured: dict[str, dict[str, list[float]]]) -> Table:
     forms = {"flat_edges_bent_share": "{:.0%}", "flat_mean_degrees": "{:.2f}°", "sharp_mean_degrees": "{:.2f}°"}
     head = ["method", f"flat pairs bent by over {FLAT:g}°", "mean bend of flat pairs", "mean change at sharp edges"]
-    rows = [[label, *(spoken(n[name], form) for name, form in forms.items())] for label, n in measured.items()]
+    rows = [[label, *(span(n[name], form) for name, form in forms.items())] for label, n in measured.items()]
     caption = f"Angles between neighbouring triangles: flat below {FLAT:g}° before, sharp above {SHARP:g}°."
     return Table("fig5-angles", caption, head, rows)
 
@@ -83,15 +84,13 @@ def _table(measured: dict[str, dict[str, list[float]]]) -> Table:
 def _claim(measured: dict[str, dict[str, list[float]]]) -> Claim:
     neural, flat, sharp = measured["neural"], "flat_mean_degrees", "sharp_mean_degrees"
     rivals = {label: n for label, n in measured.items() if label != "neural"}
+    bend, edge = "the mean bend of flat sides", "the mean change at sharp edges"
     flatter = verdicts.together(
-        *(
-            verdicts.less("the mean bend of flat sides", neural[flat], n[flat][0], name, 2)
-            for name, n in rivals.items()
-        ),
-        *(verdicts.less("the change at sharp edges", neural[sharp], n[sharp][0], name) for name, n in rivals.items()),
+        *(verdicts.less(bend, neural[flat], n[flat][0], name, factor=2) for name, n in rivals.items()),
+        *(verdicts.less(edge, neural[sharp], n[sharp][0], name) for name, n in rivals.items()),
     )
     said = "; ".join(
-        f"{label} {spoken(n[flat], '{:.2f}')}° and {spoken(n[sharp], '{:.2f}')}°" for label, n in measured.items()
+        f"{label} {span(n[flat], '{:.2f}')}° and {span(n[sharp], '{:.2f}')}°" for label, n in measured.items()
     )
     return Claim(
         paper="Neural weights keep flat sides flat and sharp edges straight where classic ones bend them.",

@@ -14,8 +14,8 @@ from neuralmls_research.experiments.reproduce import line, verdicts
 from neuralmls_research.experiments.reproduce.drawing import COLOURS, draw_weights, plots
 from neuralmls_research.experiments.reproduce.lab import Lab, classic_title
 from neuralmls_research.experiments.reproduce.line import AFTER, BEFORE, MOVED, TEMPERATURES, X, weights_on_line
-from neuralmls_research.experiments.reproduce.outcomes import spoken
 from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
+from neuralmls_research.experiments.reproduce.words import span
 
 Array = NDArray[np.float64]
 
@@ -145,7 +145,7 @@ def _claims(n: dict[str, Any]) -> list[Claim]:
             measure="The largest change, over the line, of a weight of a control point that stays: neural ones after "
             "the softmax, classic ones raw, as Figure 2 draws them.",
             rule=aware.rule,
-            measured=f"Neural {spoken(stay['neural'])} (of 1); raw classic {stay['classic_raw']:g}, exactly. "
+            measured=f"Neural {span(stay['neural'])} (of 1); raw classic {stay['classic_raw']:g}, exactly. "
             f"Normalised, classic ones change by {stay['classic_normalised']:.2f}.",
             verdict=aware.verdict,
             reader="True of raw weights, by their formula. But moving least squares uses weights through their ratios "
@@ -167,8 +167,8 @@ def _claims(n: dict[str, Any]) -> list[Claim]:
             measure="Peaks of a neural weight; share of the line that is ruled, where one control point has over 0.9 "
             "of all weight.",
             rule=smooth.rule,
-            measured=f"Neural: {spoken(most['neural'])} peak, {spoken(ruled['neural'], '{:.0%}')} of the line ruled, "
-            f"steepest {spoken(steep['T = 1'])} a unit. Classic: {most['classic_raw']} peak raw, up to "
+            measured=f"Neural: {span(most['neural'])} peak, {span(ruled['neural'], '{:.0%}')} of the line ruled, "
+            f"steepest {span(steep['T = 1'])} a unit. Classic: {most['classic_raw']} peak raw, up to "
             f"{most['classic_normalised']} normalised, {ruled['classic_normalised']:.0%} ruled.",
             verdict=smooth.verdict,
             reader="Plateaus with soft borders. Raw classic weights have one peak each as well; those behind other "
@@ -178,7 +178,7 @@ def _claims(n: dict[str, Any]) -> list[Claim]:
             paper="The temperature sets how steep the borders are.",
             measure="The steepest place of a neural weight, softmax(logits / T), at T = 0.2, 1 and 5.",
             rule=sharper.rule,
-            measured=", ".join(f"{label}: {spoken(values)}" for label, values in steep.items()) + " a unit.",
+            measured=", ".join(f"{label}: {span(values)}" for label, values in steep.items()) + " a unit.",
             verdict=sharper.verdict,
             reader="Below 1 pieces with edges, far above 1 hills that no longer own their control point.",
             ours=True,
@@ -187,7 +187,7 @@ def _claims(n: dict[str, Any]) -> list[Claim]:
             paper="A move is felt nearby: far away neural weights change less than classic ones.",
             measure="The largest change left of the second control point, by a move of the fourth, normalised.",
             rule=nearby.rule,
-            measured=f"Neural {spoken(far['neural'])}, classic {far['classic_normalised']:.3f}.",
+            measured=f"Neural {span(far['neural'])}, classic {far['classic_normalised']:.3f}.",
             verdict=nearby.verdict,
             reader="Most networks keep a change to its surroundings, but nothing in the training makes them.",
             ours=True,
