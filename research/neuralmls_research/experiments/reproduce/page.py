@@ -115,7 +115,7 @@ def _claim_row(claim: Claim, item: Item) -> str:
     verdict = f'<span class="{MARKS[claim.verdict]}">{claim.verdict.value}</span>'
     own = "<em>Our own check.</em> " if claim.ours else ""
     said = f'{own}{escape(claim.paper)} (<a href="#{item.name}">{item.name}</a>)'
-    measure = f'{escape(claim.measure)}<br><span class="rule">{escape(claim.rule)}</span>'
+    measure = f'{escape(claim.measure)}<br><span class="rule">Rule: {escape(claim.rule)}</span>'
     row = "".join(f"<td>{cell}</td>" for cell in (said, verdict, measure, escape(claim.measured), escape(claim.reader)))
     return f'<tr class="ours">{row}</tr>' if claim.ours else f"<tr>{row}</tr>"
 
