@@ -7,8 +7,8 @@ from statistics import fmean
 from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.classic_sweep import SHOWN, Sweep, classic_sweep
 from neuralmls_research.experiments.reproduce.lab import Lab
-from neuralmls_research.experiments.reproduce.outcomes import spoken
 from neuralmls_research.experiments.reproduce.report import Claim, Report
+from neuralmls_research.experiments.reproduce.words import span
 
 ALPHAS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.8, 1.0, 2.0, 3.0, 4.0, 5.0)
 SMALL, USUAL, LARGE = 0.1, 1.0, 5.0
@@ -38,8 +38,8 @@ def _spikes(sweep: Sweep) -> Claim:
         measure="A picture in the paper; here the distance of nearest vertices from targets, and the median change of "
         "mean curvature.",
         rule=ruling.rule,
-        measured=f"Distance at alpha {SMALL:g} {behind:.3f}, neural {spoken(errors, '{:.4f}')}; change of curvature at "
-        f"alpha {USUAL:g}: {bent:.3g}, neural {spoken(curvatures)}.",
+        measured=f"Distance at alpha {SMALL:g} {behind:.3f}, neural {span(errors, '{:.4f}')}; change of curvature at "
+        f"alpha {USUAL:g}: {bent:.3g}, neural {span(curvatures)}.",
         verdict=ruling.verdict,
         reader=verdicts.conclusion(
             ruling,
@@ -57,7 +57,7 @@ def _borders(sweep: Sweep) -> Claim:
         paper="Figure 9: a large alpha gives sharp borders between what the control points rule.",
         measure="A picture in the paper; here the symmetric Dirichlet energy (4: no deformation).",
         rule=ruling.rule,
-        measured=f"At alpha {LARGE:g} {energy:.2f}, neural {spoken(neural, '{:.2f}')}.",
+        measured=f"At alpha {LARGE:g} {energy:.2f}, neural {span(neural, '{:.2f}')}.",
         verdict=ruling.verdict,
         reader=verdicts.conclusion(
             ruling,

@@ -18,12 +18,12 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     ours,
     rivals,
     seeds_of,
-    spoken,
     table,
 )
 from neuralmls_research.experiments.reproduce.report import Claim, Report, Table
 from neuralmls_research.experiments.reproduce.subjects import armadillo
 from neuralmls_research.experiments.reproduce.verdicts import Ruling
+from neuralmls_research.experiments.reproduce.words import span
 
 PAPER = {NEURAL_LABEL: 0.412, "ARAP": 0.574, CLASSIC_LABEL: 0.578}
 VERTICES = 1_000  # the published script's mesh is named armadillo_1k
@@ -56,8 +56,8 @@ def of_armadillo(lab: Lab, report: Report) -> Ruling:
     report.tables.append(_shares(settings))
     values = seeds_of(found, "curvature")
     said = (
-        f"Control points of ours: neural {spoken(values[NEURAL_LABEL])}, ARAP {values['ARAP'][0]:.3g}, classic "
-        f"{values[CLASSIC_LABEL][0]:.3g}; with the narrow network of the published code {spoken(values[NARROW_LABEL])}."
+        f"Control points of ours: neural {span(values[NEURAL_LABEL])}, ARAP {values['ARAP'][0]:.3g}, classic "
+        f"{values[CLASSIC_LABEL][0]:.3g}; with the narrow network of the published code {span(values[NARROW_LABEL])}."
     )
     report.claims += [_as_printed(settings, lab.width, said), _of_grid(settings)]
     return verdicts.order({label: values[label] for label in (NARROW_LABEL, "ARAP", CLASSIC_LABEL)})

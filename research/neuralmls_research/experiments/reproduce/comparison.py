@@ -25,11 +25,11 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     ours,
     rivals,
     seeds_of,
-    spoken,
     table,
 )
 from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
 from neuralmls_research.experiments.reproduce.subjects import Subject
+from neuralmls_research.experiments.reproduce.words import span
 
 SHOWN = ("error", "curvature", "curvature_median", "laplacian", "dirichlet", "flipped")
 PAPERS = (CLASSIC_LABEL, "ARAP", KPD_LABEL)  # what the paper compares with
@@ -52,7 +52,7 @@ class Compared:
     def said(self, measure: str) -> str:
         """The values of the paper's methods in words."""
         values = seeds_of(self.found, measure)
-        parts = (f"{label} {spoken(values[label], '{:.2g}')}" for label in (NEURAL_LABEL, *PAPERS) if label in values)
+        parts = (f"{label} {span(values[label], '{:.2g}')}" for label in (NEURAL_LABEL, *PAPERS) if label in values)
         return f"{self.subject.name}: {', '.join(parts)}"
 
     def deformed(self) -> bool:

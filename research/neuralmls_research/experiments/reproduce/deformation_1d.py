@@ -151,7 +151,8 @@ def _claims(n: dict[str, Any]) -> list[Claim]:
             f"{shift['classic_1/d'][0]:.2f} (1/d²: {shift['classic_1/d^2'][0]:.2f}).",
             verdict=waver.verdict,
             reader="Neural weights waver less, but not by a factor of ten: in an affine piece they overshoot a little "
-            "where two control points stay, and 1/d² wavers as little. With the rigid transform, which the shapes are deformed by, the contrast "
+            "where two control points stay, and 1/d² wavers as little. With the rigid transform, by which the "
+            "shapes are deformed, the contrast "
             "is much larger.",
         ),
         Claim(

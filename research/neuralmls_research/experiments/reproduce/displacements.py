@@ -12,6 +12,7 @@ from neuralmls.plugin import Progress
 from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.drawing import draw_shapes
 from neuralmls_research.experiments.reproduce.lab import Lab
+from neuralmls_research.experiments.reproduce.outcomes import STEPS
 from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
 from neuralmls_research.experiments.reproduce.subjects import chair
 
@@ -39,7 +40,7 @@ def run(lab: Lab) -> Report:
     subject = chair(lab)
     p, q = subject.points.sources, subject.points.targets
     start = perf_counter()
-    weights = NeuralWeights.fit(p, bounds=subject.bounds, width=lab.width, steps=48)
+    weights = NeuralWeights.fit(p, bounds=subject.bounds, width=lab.width, steps=STEPS, seed=lab.seeds[0])
     trained = perf_counter() - start
     deformer = Deformer(subject.positions, weights)
     targets = [p + (q - p) * part for part in PARTS]
@@ -59,7 +60,8 @@ def run(lab: Lab) -> Report:
     faster = verdicts.less("a displacement's time", [frame], trained, "the training's")
     unchanged = verdicts.below(1e-4, [difference])
     return Report(
-        f"{subject.label}, {len(subject.positions):,} vertices; one network of width {lab.width}, 48 steps, rigid.",
+        f"{subject.label}, {len(subject.positions):,} vertices; one network of width {lab.width}, {STEPS} steps, "
+        "rigid.",
         pictures=[
             Picture(f"fig1-{number}.png", f"Displacement {number} of 3, by the same network.") for number in (1, 2, 3)
         ],

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from neuralmls.figures.palette import heat
 from neuralmls_research.experiments.reproduce import formats
 from neuralmls_research.experiments.reproduce.lab import Lab
 from neuralmls_research.experiments.reproduce.subjects import Subject
@@ -101,3 +102,33 @@ def draw_shapes(
         elevation=elevation,
     )
     formats.embed(lab.folder / file)
+
+
+def add_bar(lab: Lab, file: str, most: float, label: str) -> None:
+    """Put a bar of the heat colours, from 0 to `most`, below a picture of shapes.
+
+    Raises
+    ------
+    FileError
+        The file cannot be written.
+    """
+    from matplotlib import rc_context
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import ListedColormap, Normalize
+    from matplotlib.figure import Figure
+    from matplotlib.image import imread
+
+    picture = imread(lab.folder / file)
+    height, width = picture.shape[:2]
+    dots = 60 if lab.quick else 150
+    room = 0.8  # inches for the bar
+    with rc_context(STYLE):
+        figure = Figure(figsize=(width / dots, height / dots + room))
+        share = room / (height / dots + room)
+        axes = figure.add_axes((0, share, 1, 1 - share))
+        axes.imshow(picture, interpolation="none", aspect="auto")
+        axes.set_axis_off()
+        colours = ScalarMappable(Normalize(0, most), ListedColormap(heat(np.linspace(0, 1, 256))))
+        bar = figure.add_axes((0.3, 0.65 * share, 0.4, 0.2 * share))
+        figure.colorbar(colours, cax=bar, orientation="horizontal", label=label, extend="max")
+        formats.write_plot(figure, lab.folder / file, dots)

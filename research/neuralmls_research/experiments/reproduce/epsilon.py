@@ -5,8 +5,8 @@ from __future__ import annotations
 from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.classic_sweep import classic_sweep
 from neuralmls_research.experiments.reproduce.lab import Lab
-from neuralmls_research.experiments.reproduce.outcomes import spoken
 from neuralmls_research.experiments.reproduce.report import Claim, Report
+from neuralmls_research.experiments.reproduce.words import span
 
 EPSILONS = (1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 CAPTION = (
@@ -42,7 +42,7 @@ def run(lab: Lab) -> Report:
             paper="Figure 10: no epsilon takes the distortion of classic weights away.",
             measure="A picture in the paper; here the median change of mean curvature.",
             rule=bent.rule,
-            measured=f"{least:.3g} with the best epsilon, neural {spoken(neural)}.",
+            measured=f"{least:.3g} with the best epsilon, neural {span(neural)}.",
             verdict=bent.verdict,
             reader=verdicts.conclusion(
                 bent,

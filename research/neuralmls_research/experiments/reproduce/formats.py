@@ -126,7 +126,7 @@ def as_latex(table: Table) -> str:
     head, *rows = (" & ".join(map(latex, row)) + r" \\" for row in [table.head, *table.rows])
     lines = [
         r"% needs \usepackage{booktabs}",
-        f"% {table.caption}",
+        "% " + " ".join(table.caption.split()),
         rf"\begin{{tabular}}{{{columns}}}",
         r"\toprule",
         head,

@@ -17,11 +17,11 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     first_of,
     numbers,
     seeds_of,
-    spoken,
     table,
 )
 from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
 from neuralmls_research.experiments.reproduce.subjects import airplane
+from neuralmls_research.experiments.reproduce.words import span
 
 PLAIN, PUBLISHED = "rigid", "Fourier, affine"
 SIGMA = 2.0  # of the published study
@@ -74,7 +74,7 @@ def _claim(found: Sequence[Outcome]) -> Claim:
     )
 
     def said(measure: str) -> str:
-        return f"{spoken(values[measure][PUBLISHED])} ({PLAIN} {spoken(values[measure][PLAIN])})"
+        return f"{span(values[measure][PUBLISHED])} ({PLAIN} {span(values[measure][PLAIN])})"
 
     return Claim(
         paper="For airplanes, Fourier features with affine maps do better: the setting of the published study.",

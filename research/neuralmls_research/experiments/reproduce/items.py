@@ -30,6 +30,7 @@ class Item:
 ITEMS = (
     Item("fig1", "Figure 1: one network, several displacements", "displacements"),
     Item("fig2", "Figure 2: weights on a line", "weights_1d"),
+    Item("fig3", "Figure 3: the method at a glance", "overview"),
     Item("square", "Weights of a square of control points", "weights_2d"),
     Item("fig4", "Figure 4: methods side by side", "comparison"),
     Item("fig5", "Figure 5: sharp edges", "sharp_edges"),

@@ -17,6 +17,7 @@ from neuralmls_research.experiments.reproduce.drawing import CLASSIC, NEURAL, pl
 from neuralmls_research.experiments.reproduce.lab import Lab, classic_title
 from neuralmls_research.experiments.reproduce.report import Table
 from neuralmls_research.experiments.reproduce.subjects import Subject
+from neuralmls_research.experiments.reproduce.words import span
 from neuralmls_research.metrics import curvature_change, flipped_triangles, handle_errors, strain
 
 Array = NDArray[np.float64]
@@ -164,16 +165,10 @@ def first_of(found: Sequence[Outcome]) -> dict[str, Array]:
     return {label: outcomes[0].positions for label, outcomes in group(found).items()}
 
 
-def spoken(values: Sequence[float], form: str = "{:.3g}") -> str:
-    """A value, or the least and largest of several."""
-    low, high = form.format(min(values)), form.format(max(values))
-    return low if low == high else f"{low} to {high}"
-
-
 def table(name: str, caption: str, head: str, found: Sequence[Outcome], columns: Sequence[str]) -> Table:
     """The measures of outcomes, those that `columns` names; of a network with several seeds the least and largest."""
     rows = [
-        [label, *(spoken([o.numbers[column] for o in outcomes], COLUMNS[column][1]) for column in columns)]
+        [label, *(span([o.numbers[column] for o in outcomes], COLUMNS[column][1]) for column in columns)]
         for label, outcomes in group(found).items()
     ]
     return Table(name, caption, [head, *(COLUMNS[column][0] for column in columns)], rows)

@@ -12,9 +12,10 @@ from typing import Any
 
 from neuralmls import __version__
 from neuralmls.plugin import write_atomically
+from neuralmls_research.experiments.reproduce.formats import write_table
 from neuralmls_research.experiments.reproduce.items import Item
 from neuralmls_research.experiments.reproduce.lab import Lab
-from neuralmls_research.experiments.reproduce.page import page
+from neuralmls_research.experiments.reproduce.page import page, verdicts
 from neuralmls_research.experiments.reproduce.provenance import provenance
 from neuralmls_research.experiments.reproduce.report import Report
 
@@ -26,7 +27,7 @@ def reproduce(
     lab: Lab,
     around: Callable[[str], AbstractContextManager[object]] = lambda _: nullcontext(),
 ) -> tuple[Path, dict[Item, Report]]:
-    """Run the items, and write pictures, page and numbers into the lab's folder.
+    """Run the items, and write pictures, tables, page and numbers into the lab's folder.
 
     Parameters
     ----------
@@ -54,6 +55,8 @@ def reproduce(
         spent = perf_counter() - wall, process_time() - processor
         run["seconds"][item.name] = {"wall": round(spent[0], 2), "processor": round(spent[1], 2)}
     write_atomically(lab.folder / NUMBERS, (json.dumps({**run, "items": _items(reports)}, indent=1) + "\n").encode())
+    for table in [verdicts(reports), *(table for report in reports.values() for table in report.tables)]:
+        write_table(table, lab.folder)
     path = lab.folder / PAGE
     write_atomically(path, page(reports, __version__).encode())
     return path, reports

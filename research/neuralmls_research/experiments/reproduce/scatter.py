@@ -18,7 +18,6 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     narrow,
     numbers,
     ours,
-    spoken,
 )
 from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
 from neuralmls_research.experiments.reproduce.scatter_cases import (
@@ -32,6 +31,7 @@ from neuralmls_research.experiments.reproduce.scatter_cases import (
 )
 from neuralmls_research.experiments.reproduce.scatter_drawing import draw
 from neuralmls_research.experiments.reproduce.subjects import many
+from neuralmls_research.experiments.reproduce.words import span
 
 CATEGORIES = ("chair", "airplane", "car")  # the paper's
 LEAST = 3  # deformations of a category, below which it has no verdict
@@ -94,7 +94,7 @@ def _changes(cases: Sequence[Case]) -> str:
     classic = [case.against("laplacian", CLASSIC_LABEL) for case in cases]
     ratios = [fmean(neural) / other for neural, other in classic]
     return (
-        f"Less than {_against('laplacian', cases)}; neural / classic {spoken(ratios, '{:.2f}')}. Beside it, mean "
+        f"Less than {_against('laplacian', cases)}; neural / classic {span(ratios, '{:.2f}')}. Beside it, mean "
         f"change of mean curvature: less than {_against('curvature', cases)}."
         + (" The shapes are no shapes of the paper, but stand in." if any(case.ours for case in cases) else "")
     )

@@ -18,10 +18,10 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     ours,
     rivals,
     seeds_of,
-    spoken,
 )
 from neuralmls_research.experiments.reproduce.report import Table
 from neuralmls_research.experiments.reproduce.subjects import Subject
+from neuralmls_research.experiments.reproduce.words import span
 
 PAPERS = (CLASSIC_LABEL, KPD_LABEL, "ARAP")  # what the paper compares with
 MEASURED = ("laplacian", "error", "curvature", "curvature_median", "dirichlet")
@@ -97,7 +97,7 @@ def of_all(measure: str, shown: Sequence[str], cases: Sequence[Case]) -> Table:
 
     def cell(case: Case, label: str) -> str:
         values = case.values[measure].get(label)
-        return "-" if values is None else spoken(values, COLUMNS[measure][1])
+        return "-" if values is None else span(values, COLUMNS[measure][1])
 
     rows = [[f"{i}: {case.label}", *(cell(case, label) for label in shown)] for i, case in enumerate(cases, 1)]
     caption = (

@@ -23,12 +23,12 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     ours,
     rivals,
     seeds_of,
-    spoken,
     table,
 )
 from neuralmls_research.experiments.reproduce.report import Claim, Report, Table
 from neuralmls_research.experiments.reproduce.subjects import Subject, airplane
 from neuralmls_research.experiments.reproduce.verdicts import Ruling
+from neuralmls_research.experiments.reproduce.words import span
 from neuralmls_research.metrics import curvature_change
 
 Array = NDArray[np.float64]
@@ -77,7 +77,7 @@ def of_airplane(lab: Lab, report: Report) -> Ruling:
     report.tables.insert(0, _beside_the_paper(changes, [*PAPER, NARROW_LABEL, *ours(lab)]))
     report.numbers["airplane"] |= {"single": changes.single, "double": changes.double, "median": changes.median}
     report.numbers["airplane"]["ratios_of_the_seeds"] = changes.ratios()
-    said = f"{_said(changes.single)}; neural / classic {spoken(changes.ratios(), '{:.3f}')} (paper 0.938)."
+    said = f"{_said(changes.single)}; neural / classic {span(changes.ratios(), '{:.3f}')} (paper 0.938)."
     if KPD_LABEL not in changes.single:
         report.missing.append("KeypointDeformer's published weights and output ($NEURALMLS_GOLDEN).")
         missing = verdicts.untestable("KeypointDeformer's published output is not here")
@@ -115,7 +115,7 @@ def _beside_the_paper(changes: Changes, labels: Sequence[str]) -> Table:
         row = [label, *(["-", "-"] if printed is None else [f"{printed}", f"{printed / PAPER[CLASSIC_LABEL]:.3f}"])]
         for values, form in ((changes.single, "{:.1f}"), (changes.double, "{:.1f}"), (changes.median, "{:.2f}")):
             if label in values:
-                row += [spoken(values[label], form), f"{fmean(values[label]) / values[CLASSIC_LABEL][0]:.3f}"]
+                row += [span(values[label], form), f"{fmean(values[label]) / values[CLASSIC_LABEL][0]:.3f}"]
             else:
                 row += ["not run"] * 2
         rows.append(row)
@@ -126,7 +126,7 @@ def _beside_the_paper(changes: Changes, labels: Sequence[str]) -> Table:
 
 
 def _said(values: dict[str, list[float]], form: str = "{:.0f}") -> str:
-    return ", ".join(f"{label} {spoken(values[label], form)}" for label in PAPER if label in values)
+    return ", ".join(f"{label} {span(values[label], form)}" for label in PAPER if label in values)
 
 
 def _claim(measured: str, ruling: Ruling) -> Claim:

@@ -20,11 +20,11 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     numbers,
     rivals,
     seeds_of,
-    spoken,
 )
 from neuralmls_research.experiments.reproduce.report import Claim, Report, Table
 from neuralmls_research.experiments.reproduce.subjects import Subject, cars, chairs
 from neuralmls_research.experiments.reproduce.verdicts import Ruling
+from neuralmls_research.experiments.reproduce.words import span
 
 LABELS = (NEURAL_LABEL, NARROW_LABEL, CLASSIC_LABEL, STEEPER_LABEL, KPD_LABEL)
 LEAST = 3  # deformations, below which there is no verdict
@@ -71,7 +71,7 @@ def _table(name: str, measured: Measured) -> Table:
     rows = []
     for subject, found in measured:
         values = seeds_of(found, "curvature")
-        cells = (spoken(values[label], COLUMNS["curvature"][1]) if label in values else "-" for label in LABELS)
+        cells = (span(values[label], COLUMNS["curvature"][1]) if label in values else "-" for label in LABELS)
         rows.append([subject.label, *cells])
     caption = "|Δ mean curvature|, mean: least and largest of the seeds; - where a method does not apply."
     return Table(f"table1-{name}", caption, ["deformation", *LABELS], rows)
@@ -97,7 +97,7 @@ def _chairs(measured: Measured) -> Claim:
         measure="Mean change of mean curvature.",
         rule=ruling.rule,
         measured=f"Less in {_wins(measured, CLASSIC_LABEL)}; {measured[0][0].label}: neural "
-        f"{spoken(first[NEURAL_LABEL])}, classic {spoken(first[CLASSIC_LABEL])}. Of the Laplacian, less in "
+        f"{span(first[NEURAL_LABEL])}, classic {span(first[CLASSIC_LABEL])}. Of the Laplacian, less in "
         f"{_wins(measured, CLASSIC_LABEL, 'laplacian')}. KeypointDeformer has no weights for chairs here.",
         verdict=ruling.verdict,
         reader=verdicts.conclusion(

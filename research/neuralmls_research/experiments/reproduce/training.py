@@ -16,12 +16,12 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     Setting,
     by_settings,
     numbers,
-    spoken,
     table,
 )
 from neuralmls_research.experiments.reproduce.outcomes import STEPS as PUBLISHED_STEPS
 from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
 from neuralmls_research.experiments.reproduce.subjects import chair
+from neuralmls_research.experiments.reproduce.words import span
 
 WIDTHS = (64, 128, 256, 512, 1024)
 STEPS = (12, 24, 48, 96, 200)
@@ -89,8 +89,8 @@ def run(lab: Lab) -> Report:
                 paper="Seeds differ less than methods do.",
                 measure="Control-point error and median change of mean curvature.",
                 rule=steady.rule,
-                measured=f"Five seeds: control-point error {spoken(errors.tolist(), '{:.4f}')}, median change of mean "
-                f"curvature {spoken(distortion.tolist())}; {CLASSIC_LABEL} {rival:.3g}.",
+                measured=f"Five seeds: control-point error {span(errors.tolist(), '{:.4f}')}, median change of mean "
+                f"curvature {span(distortion.tolist())}; {CLASSIC_LABEL} {rival:.3g}.",
                 verdict=steady.verdict,
                 reader=verdicts.conclusion(
                     steady,

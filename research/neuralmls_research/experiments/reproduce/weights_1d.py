@@ -145,8 +145,8 @@ def _claims(n: dict[str, Any]) -> list[Claim]:
             measure="The largest change, over the line, of a weight of a control point that stays: neural ones after "
             "the softmax, classic ones raw, as Figure 2 draws them.",
             rule=aware.rule,
-            measured=f"Neural {span(stay['neural'])} (of 1); raw classic {stay['classic_raw']:g}, exactly. Normalised, "
-            f"classic ones change by {stay['classic_normalised']:.2f}.",
+            measured=f"Neural {span(stay['neural'])} (of 1); raw classic {stay['classic_raw']:g}, exactly. "
+            f"Normalised, classic ones change by {stay['classic_normalised']:.2f}.",
             verdict=aware.verdict,
             reader="True of raw weights, by their formula. But moving least squares uses weights through their ratios "
             "alone (Proposition 1), and normalised classic weights change too: the figure compares curves that are "
