@@ -1,4 +1,4 @@
-"""The folders of test data, and how fast tests train: as for the package itself."""
+"""The folders of test data: as for the package itself."""
 
 from tests.conftest import data, golden
 

@@ -13,8 +13,6 @@ from neuralmls_research.experiments.methods import of_shapes
 from neuralmls_research.experiments.poses import POSE_METHODS, QUICK
 from neuralmls_research.experiments.seeds import OtherOrder
 
-pytestmark = pytest.mark.usefixtures("brief_training")
-
 
 @pytest.fixture
 def folder(here):
