@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from neuralmls.errors import FileError
+from neuralmls_research.experiments.naming import power
 
 SEEDS = (0, 1, 2, 3)
 
@@ -81,5 +82,4 @@ def classic_title(alpha: float) -> str:
     >>> classic_title(1.0)
     'classic, alpha 1 (1/d^2)'
     """
-    power = "1/d" if alpha == 0.5 else f"1/d^{2 * alpha:g}"
-    return f"classic, alpha {alpha:g} ({power})"
+    return f"classic, alpha {alpha:g} ({power(alpha)})"

@@ -173,7 +173,7 @@ def cars(lab: Lab) -> list[Subject]:
             shape.faces.astype(np.int64),
         )
     x = np.stack([positions[:, 2], positions[:, 1], -positions[:, 0]], axis=1)
-    bound = KeypointDeformer.read(weights).bind(Surface(x, faces))  # type: ignore[arg-type]
+    bound = KeypointDeformer.read(weights).bind(Surface(x, faces))
     points = ControlPoints(bound.keypoints, bound.keypoints)
     rest = _normalised("car", origin, x, faces, points, ours=True)
     found = []
