@@ -63,8 +63,8 @@ def page(reports: Mapping[Item, Report], version: str) -> str:
 <body>
 <h1>The experiments of NeuralMLS, run again</h1>
 <p id="claims">What the paper says, and what came out: <strong>{", ".join(counts)}</strong>{own}.
-The claims are in our words. The rules stand in the code, and were there before this run; those that were worded after an
-earlier run had been seen are named in docs/reproduction.md. {_files("verdicts", TABLES)}</p>
+The claims are in our words. The rules stand in the code, and were there before this run; those that were worded after
+an earlier run had been seen are named in docs/reproduction.md. {_files("verdicts", TABLES)}</p>
 <div class="wide"><table class="claims">
 <thead><tr><th>what the paper says</th><th>verdict</th><th>its measure, and the rule</th>
 <th>measured here</th><th>what to conclude</th></tr></thead>
