@@ -15,22 +15,21 @@
 //! logit_j(x) += t_j sum_i (K + ridge)^-1_ij (h_i . h(x) + 1),    K_ij = h_i . h_j + 1
 //! ```
 //!
-//! Training by Adam until the nearest two of hundreds are told apart takes a thousand steps, in which all others become as sharp as
-//! cells, which smooth motions show.
+//! Adam takes a thousand steps until the nearest two of hundreds are told apart.
 
 use super::gemm;
 use super::inverse::inverse;
 use super::parameters::{relu, Layer, Parameters};
 use crate::machine::parallel::for_each_block;
 
-/// `a` times the square of the median distance of a prototype to its nearest: a smooth blend (studies/many_points.py).
-const SHARPNESS: f64 = 0.5;
+/// `a` times the square of the median distance of a prototype to its nearest (studies/many_points.py).
+const SHARPNESS: f64 = 4.0;
 /// The weight at their own places to which control points are lifted: a little more than is asked for, which rounding may take.
-const LIFTED: f64 = 0.52;
+const LIFTED: f64 = 0.935;
 /// Of the mean of K's diagonal.
-const RIDGE: f64 = 1e-6;
+const RIDGE: f64 = 1e-8;
 /// What control points are lifted by changes the share of others: so many times at most.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 12;
 
 /// The output layer for `points`, two or more.
 pub(super) fn output_layer(network: &Parameters, points: &[f64]) -> Layer {

@@ -5,7 +5,7 @@
 //! of the weight at its own place, because handles that do not own their place do not arrive at their targets. Many control points begin at an output layer in closed form
 //! ([`prototypes`]), with random hidden layers, which is mostly enough.
 
-use std::f64::consts::{LN_2, PI};
+use std::f64::consts::PI;
 
 use super::features;
 use super::mlp::Network;
@@ -24,8 +24,7 @@ use trainer::{Losses, Trainer};
 
 /// A control point owns its place when its cross-entropy there is at most this: 0.9 of the weight.
 const SMALL_LOSS: f64 = 0.105;
-/// From so many control points on, the default training begins at an output layer in closed form, and half of the weight is enough
-/// (studies/many_points.py).
+/// From so many control points on, the default training begins at an output layer in closed form (studies/many_points.py).
 const MANY: usize = 64;
 /// How much faster neurons that begin at samples change than others.
 const GAIN: f32 = 4.0;
@@ -36,8 +35,8 @@ const MOST_CONTROL_POINTS: usize = 1000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Schedule {
     /// At the full rate until every control point has 0.9 of the weight at its own place, then a quarter as many steps
-    /// at a tenth of it; at most so many in all. Of 64 control points or more, 0.5 of the weight, which they mostly have before
-    /// the first step, by the output layer that they begin with.
+    /// at a tenth of it; at most so many in all. 64 control points or more mostly have as much before the first step,
+    /// by the output layer that they begin with.
     UntilSmall {
         /// The most steps.
         at_most: usize,
@@ -205,7 +204,7 @@ fn teach(
 ) -> Result<Trained, Error> {
     check_number("rate", rate, rate > 0.0, "a number above 0")?;
     let one = network.outputs() == 1;
-    let enough = if network.outputs() < MANY { SMALL_LOSS } else { LN_2 };
+
     let most = match schedule {
         Schedule::UntilSmall { at_most } => at_most,
         Schedule::Fixed(steps) | Schedule::Cosine(steps) => steps,
@@ -222,7 +221,7 @@ fn teach(
             let step = losses.len();
             report(progress, step as f64 / end as f64)?;
             let Losses { mean, worst } = trainer.losses();
-            let small = matches!(schedule, Schedule::UntilSmall { .. }) && worst <= enough;
+            let small = matches!(schedule, Schedule::UntilSmall { .. }) && worst <= SMALL_LOSS;
             if small && step < slow_from {
                 slow_from = step;
                 end = step + step.div_ceil(4);
