@@ -45,7 +45,8 @@ class NeuralWeights(NetworkWeights):
             Neurons a hidden layer: 1024 in the paper.
         steps : int, optional
             A fixed number of steps: 48 in the published code. Without it, until every control point has 0.9 of the
-            weight at its own place (at most 2000), because handles that do not own their place stop short.
+            weight at its own place (at most 2000), because handles that do not own their place stop short. 64
+            control points or more then begin at an output layer in closed form, and mostly need no step.
         rate : float > 0
             Adam's learning rate.
         fourier_sigma : float > 0, optional

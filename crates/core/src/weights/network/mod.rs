@@ -10,10 +10,12 @@ mod features;
 mod first;
 mod gemm;
 mod initialise;
+mod inverse;
 mod linear;
 mod mlp;
 mod parameters;
 mod piecewise;
+mod prototypes;
 mod samples;
 mod train;
 

@@ -2,13 +2,15 @@
 //!
 //! Full-batch cross-entropy, Adam (Kingma, Ba 2015, as in `torch.optim.Adam`), rate 6e-4, and a tenth of it for the last fifth of the steps.
 //! Where it differs from the published code: by default it does not stop after a fixed 48 steps but when every control point has most
-//! of the weight at its own place, because handles that do not own their place do not arrive at their targets.
+//! of the weight at its own place, because handles that do not own their place do not arrive at their targets. Many control points begin
+//! at an output layer in closed form ([`prototypes`]), with random hidden layers, which is mostly enough.
 
 use std::f64::consts::PI;
 
 use super::features;
 use super::mlp::Network;
 use super::parameters::{Layer, Parameters};
+use super::prototypes;
 use super::samples::{lexicographic_order, sorted, Lessons, Samples};
 use crate::check::{check_number, check_points};
 use crate::error::Error;
@@ -22,6 +24,8 @@ use trainer::{Losses, Trainer};
 
 /// A control point owns its place when its cross-entropy there is at most this: 0.9 of the weight.
 const SMALL_LOSS: f64 = 0.105;
+/// From so many control points on, the default training begins at an output layer in closed form (studies/many_points.py).
+const MANY: usize = 64;
 /// How much faster neurons that begin at samples change than others.
 const GAIN: f32 = 4.0;
 /// Most control points: beyond, every layer of the paper's network is too small for them.
@@ -31,7 +35,8 @@ const MOST_CONTROL_POINTS: usize = 1000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Schedule {
     /// At the full rate until every control point has 0.9 of the weight at its own place, then a quarter as many steps
-    /// at a tenth of it; at most so many in all.
+    /// at a tenth of it; at most so many in all. 64 control points or more mostly have as much before the first step,
+    /// by the output layer that they begin with.
     UntilSmall {
         /// The most steps.
         at_most: usize,
@@ -139,7 +144,10 @@ pub fn fit(
     if let Some(samples) = samples {
         bend_at(&mut layers[0], samples.x, dim, &frame);
     }
-    let network = Parameters::new(dim, frame, frequencies, layers)?;
+    let mut network = Parameters::new(dim, frame, frequencies, layers)?;
+    if m >= MANY && samples.is_none() && matches!(training.schedule, Schedule::UntilSmall { .. }) {
+        network.layers[2] = prototypes::output_layer(&network, &in_line);
+    }
 
     let mut trained = teach(network, p, lessons, training.schedule, training.rate, progress)?;
     let last = &mut trained.network.parameters.layers[2];
@@ -196,6 +204,7 @@ fn teach(
 ) -> Result<Trained, Error> {
     check_number("rate", rate, rate > 0.0, "a number above 0")?;
     let one = network.outputs() == 1;
+
     let most = match schedule {
         Schedule::UntilSmall { at_most } => at_most,
         Schedule::Fixed(steps) | Schedule::Cosine(steps) => steps,

@@ -204,3 +204,43 @@ fn samples_are_given_their_labels_whatever_the_number_of_threads() {
         assert_eq!(pool.install(teach), here, "{threads} threads");
     }
 }
+
+/// Points on a spiral, of which two are a hundred times closer together than the others.
+fn many() -> Vec<f64> {
+    let place = |t: f64| [0.1 * t.sqrt() * t.sin(), 0.1 * t.sqrt() * t.cos(), 0.2 * (0.7 * t).sin()];
+    (0..69).map(f64::from).chain([30.01]).flat_map(place).collect()
+}
+
+#[test]
+fn many_control_points_own_their_places_without_a_step() {
+    let training = Training { width: 256, ..Training::default() };
+    let teach = || fit(&many(), None, 3, Frame::IDENTITY, &training, &mut |_| true).unwrap();
+    let here = teach();
+    assert!(here.losses.is_empty() && here.loss < SMALL_LOSS, "{} steps", here.losses.len());
+    let logits = here.network.logits(&many(), &mut |_| true).unwrap();
+    for (i, row) in logits.chunks(70).enumerate() {
+        let mut w = [0.0; 70];
+        crate::softmax::weights(row, 1.0, &mut w);
+        assert!(w[i] >= 0.9, "{i}: {}", w[i]);
+    }
+    #[cfg(feature = "threads")]
+    for threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        assert_eq!(pool.install(teach), here, "{threads} threads");
+    }
+}
+
+#[test]
+fn a_layer_too_narrow_for_its_control_points_is_trained_from_there() {
+    let schedule = Schedule::UntilSmall { at_most: 20 };
+    let training = Training { width: 24, schedule, ..Training::default() };
+    let fit = fit(&many(), None, 3, Frame::IDENTITY, &training, &mut |_| true).unwrap();
+    assert!(!fit.losses.is_empty() && fit.loss < fit.losses[0], "{:?} {}", fit.losses, fit.loss);
+}
+
+#[test]
+fn a_number_of_steps_begins_at_random_whatever_the_number_of_control_points() {
+    let training = Training { schedule: Schedule::Fixed(1), ..small() };
+    let fit = fit(&many(), None, 3, Frame::IDENTITY, &training, &mut |_| true).unwrap();
+    assert!((fit.losses[0] - 70f64.ln()).abs() < 0.1, "{}", fit.losses[0]);
+}

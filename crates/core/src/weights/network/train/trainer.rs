@@ -3,9 +3,9 @@
 use super::super::activations::Activations;
 use super::super::adam::{Rates, DUST};
 use super::super::first::First;
-use super::super::gemm;
 use super::super::linear::Linear;
-use super::super::parameters::{relu, Layer, Parameters};
+use super::super::parameters::Parameters;
+use super::super::prototypes::activations;
 use super::super::samples::Lessons;
 use crate::machine::parallel::for_each_block_pair;
 use crate::machine::simd::{Aligned, WIDTH};
@@ -166,12 +166,4 @@ fn of_points(features: &[f32], count: usize, points: &[usize]) -> Vec<f32> {
 /// The features of some points, `count` each, as columns: `count` x the points.
 fn columns(features: &[f32], count: usize, points: &[usize]) -> Vec<f32> {
     (0..count).flat_map(|k| points.iter().map(move |point| features[point * count + k])).collect()
-}
-
-/// `relu(W input + b)`, outputs x m.
-fn activations(layer: &Layer, input: &[f32], m: usize) -> Vec<f32> {
-    let mut values = vec![0.0; layer.outputs() * m];
-    gemm::forward(layer, input, m, &mut values);
-    relu(&mut values);
-    values
 }
