@@ -49,8 +49,9 @@ function textOf(fit: FitState): string {
     case "ready":
       return fit.loss === null
         ? "Ready"
-        : `Ready · loss ${fit.loss.toPrecision(2)} after ${fit.steps} steps · ${(fit.milliseconds / 1000).toFixed(2)} s`;
+        : `Ready · loss ${fit.loss.toPrecision(2)} ${training(fit.steps)} · ${(fit.milliseconds / 1000).toFixed(2)} s`;
   }
 }
 
+const training = (steps: number): string => (steps === 0 ? "in closed form" : `after ${steps} steps`);
 const percent = (share: number): string => `${(100 * share).toFixed(share < 0.01 ? 1 : 0)} %`;

@@ -134,7 +134,8 @@ def _handles(told: dict[str, Any]) -> list[tuple[str, str]]:
 
 def _weights(weights: dict[str, Any]) -> str:
     if weights["kind"] != "inverse-distance":
-        return f"{weights['kind']}, loss {weights['loss']:.3g} after {weights['steps']:,} steps, seed {weights['seed']}"
+        how = f"after {weights['steps']:,} steps" if weights["steps"] else "in closed form"
+        return f"{weights['kind']}, loss {weights['loss']:.3g} {how}, seed {weights['seed']}"
     return f"inverse-distance, alpha {weights['alpha']:g}, epsilon {weights['epsilon']:g}"
 
 
