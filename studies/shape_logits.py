@@ -28,3 +28,19 @@ def shape_logits(
     logits = share * power * met - (1 - share) * EXPONENT * straight
     below = logits.max(axis=1, keepdims=True) - logits
     return np.asarray(-np.minimum(below, kept) - TAIL * np.log1p(np.maximum(below - kept, 0) / TAIL))
+
+
+NEAR, NEAR_END, OWN = 0.5, 0.75, 0.55  # of the way to the second nearest; the least weight there
+
+
+def followed(logits: Array, distances: Array) -> Array:
+    """Return the logits (nodes, m), raised where a control point is near and has less than `OWN` of the weight."""
+    rows, own = np.arange(len(logits)), distances.argmin(axis=1)
+    first, second = np.sort(distances, axis=1)[:, :2].T
+    least = OWN * np.clip((NEAR_END - first / second) / (NEAR_END - NEAR), 0, 1)
+    others = np.exp(logits)
+    others[rows, own] = 0
+    raised = logits.copy()
+    with np.errstate(divide="ignore"):
+        raised[rows, own] = np.maximum(logits[rows, own], np.log(others.sum(axis=1) * least / (1 - least)))
+    return np.asarray(raised - raised.max(axis=1, keepdims=True))

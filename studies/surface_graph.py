@@ -19,8 +19,8 @@ MOST_MET = 64  # such nodes
 AROUND = 2.0  # times: those to which paths lead from it, for one in a body is not on one side of it only
 MOST_AROUND = 512
 FIRM = 1.0  # what links of a control point conduct, a cell away; on a node ten times as much
-HOLD = 1.2  # of the way to the nearest other control point: how far one holds what is nearest to it
-HELD = 2.0  # how firmly, in the middle, by area over the square of that radius
+HOLD = 0.8  # of the way to the nearest other control point: how far one holds what is nearest to it
+HELD = 0.5  # how firmly, by area over the square of the distance
 
 
 class Reach(NamedTuple):
@@ -64,7 +64,7 @@ class SurfaceGraph:
         is: a walk finds its way from a trunk into a thin leg seldom, and from the leg to the trunk soon.
 
         A control point is no needle, at which a harmonic function would be infinitely steep: it holds what is nearest
-        to it (`reach`), less and less up to 1.2 of the way to the nearest other one, and a walk may end wherever it
+        to it (`reach`), less and less up to 0.8 of the way to the nearest other one, and a walk may end wherever it
         does.
 
         Source
@@ -77,9 +77,10 @@ class SurfaceGraph:
         firm = FIRM * CELL / (far + 0.1 * CELL)
         radius = hold * reach.apart[reach.nearest]
         around = np.flatnonzero(reach.far < radius)
-        density = held / radius[around] ** 2 * (1 - (reach.far[around] / radius[around]) ** 2) ** 2
+        near = reach.far[around]
+        density = held / (near**2 + CELL**2) * (1 - (near / radius[around]) ** 2) ** 2
         which, nodes = np.append(which, reach.nearest[around]), np.append(nodes, around)
-        firm = np.append(firm, density * self._links.areas()[around])
+        firm = np.append(firm, density * self._links.areas[around])
         (a, b), conducts = self._links.ends.T, self._links.conductances
         values = np.concatenate([-conducts, -conducts, conducts, conducts, firm])
         rows, columns = np.concatenate([a, b, a, b, nodes]), np.concatenate([b, a, a, b, nodes])
@@ -111,6 +112,21 @@ class SurfaceGraph:
         for end in (a, b):
             np.minimum.at(apart, source[end[across]] - count, (far[a] + lengths + far[b])[across])
         return Reach(far[:count], source[:count] - count, apart)
+
+    def distances(self, p: Array, *, around: float = AROUND) -> Array:
+        """Return how far each of `p` (m, d) is from each node along the shape, past the others: (nodes, m)."""
+        count = len(self.nodes)
+        pairs = _two_steps(self._links.ends, count)
+        which, nodes, away = self._attached(p, around, MOST_AROUND)
+        lengths = np.maximum(np.linalg.norm(self.nodes[pairs[:, 0]] - self.nodes[pairs[:, 1]], axis=1), 1e-12)
+        found = []
+        for i in range(len(p)):
+            own = which == i
+            ends = np.append(pairs[:, 0], np.full(own.sum(), count)), np.append(pairs[:, 1], nodes[own])
+            whole = np.append(lengths, np.maximum(away[own], 1e-12))
+            graph = csr_array((whole, ends), shape=(count + 1, count + 1))
+            found.append(dijkstra(graph, directed=False, indices=count)[:count])
+        return np.stack(found, axis=1)
 
     def nearest(self, x: Array) -> Indices:
         """Return the node nearest to each of the points (k, d)."""

@@ -33,9 +33,9 @@ const BEYOND: Record<string, number> = {
   "T 0.3, oriented": 4e-6,
   "T 0.1": 8e-6,
   "shape-aware": 2.5e-3,
-  "shape-aware, soft, T 2, similarity": 1e-3,
-  "shape-aware, exact, oriented": 1.5e-3,
-  "shape-aware, affine, by half": 1e-3,
+  "shape-aware, soft, T 2, similarity": 2.5e-3,
+  "shape-aware, exact, oriented": 2.5e-3,
+  "shape-aware, affine, by half": 2.5e-3,
 };
 const silent = (): void => undefined;
 

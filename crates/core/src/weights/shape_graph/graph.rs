@@ -5,17 +5,17 @@
 //! their nearest neighbours. At last all nodes of one connected patch in a small cell become one: a fine mesh is then as cheap as a coarse one.
 
 use super::links::{connected, summed, Links};
-use super::mesh::{divide, edges, merged};
+use super::mesh::{areas, divide, edges, merged};
 use super::near::Near;
-use super::{Position, CELL};
+use super::{squared, Position, CELL};
 use crate::machine::parallel::for_each_block;
 
 /// Components nearer than this touch, in halves of the shape's longest side.
 const TOUCH: f64 = 0.03;
 /// Of a point of a cloud.
 const NEIGHBOURS: usize = 8;
-/// Nodes looked at for another component that touches.
-const NEAREST: usize = 16;
+/// Nodes of other components to which one that touches is linked.
+const NEAREST: usize = 8;
 /// What a link that is no edge conducts: about as much as an edge between even triangles.
 const EVEN: f64 = 0.5;
 /// Of a cell: what cells begin at, so that no wall is where coordinates of furniture are: 0, 1, halves.
@@ -31,15 +31,27 @@ pub(super) fn links_of(x: &[Position], faces: &[[u32; 3]]) -> Links {
     let mut loose = vec![true; nodes.len()];
     faces.iter().flatten().for_each(|&corner| loose[corner as usize] = false);
     let loose: Vec<u32> = (0..nodes.len() as u32).filter(|&node| loose[node as usize]).collect();
-    let mut links = Links { nodes, ends, conductances };
-    links.add(&neighbours(&links.nodes, &loose), EVEN);
+    let areas = areas(&nodes, &faces);
+    let mut links = Links { nodes, ends, conductances, areas };
+    for ends in neighbours(&links.nodes, &loose) {
+        links.add(ends, EVEN);
+        // Of the strip along the link, what is nearer to either end.
+        let quarter = 0.25 * EVEN * squared(&links.nodes[ends[0] as usize], &links.nodes[ends[1] as usize]);
+        ends.iter().for_each(|&end| links.areas[end as usize] += quarter);
+    }
     let mut components = links.components();
     if components.iter().any(|&component| component > 0) {
         let near = Near::new(&links.nodes);
-        links.add(&touching(&links.nodes, &near, &components), EVEN);
+        let touches = touching(&links.nodes, &near, &components);
+        // All of a node conduct as one: where soups lie in each other there are many.
+        for of_one in touches.chunk_by(|a, b| a[0] == b[0]) {
+            of_one.iter().for_each(|ends| links.add(*ends, EVEN / of_one.len() as f64));
+        }
         components = links.components();
         while components.iter().any(|&component| component > 0) {
-            links.add(&nearest_pairs(&links.nodes, &near, &components), EVEN);
+            nearest_pairs(&links.nodes, &near, &components)
+                .into_iter()
+                .for_each(|ends| links.add(ends, EVEN));
             components = links.components();
         }
     }
@@ -58,11 +70,10 @@ fn neighbours(nodes: &[Position], loose: &[u32]) -> Vec<[u32; 2]> {
 
 /// Links between nodes of different components that touch.
 fn touching(nodes: &[Position], near: &Near, components: &[u32]) -> Vec<[u32; 2]> {
-    let mut links = of_each(nodes.len(), |at, found| {
-        near.nearest(&nodes[at], NEAREST, TOUCH * TOUCH, |_| true, found);
-    });
-    links.retain(|[a, b]| components[*a as usize] != components[*b as usize]);
-    links
+    of_each(nodes.len(), |at, found| {
+        let others = |other: u32| components[other as usize] != components[at];
+        near.nearest(&nodes[at], NEAREST, TOUCH * TOUCH, others, found);
+    })
 }
 
 /// Links of each number to what `find` finds for it.
@@ -115,7 +126,9 @@ fn in_cells(links: &Links) -> Links {
     let (ends, widths) = summed(between.map(|link| {
         (links.ends[link].map(|end| patches[end as usize]), links.conductances[link] * links.length(link))
     }));
-    let mut merged = Links { nodes, ends, conductances: Vec::new() };
+    let mut areas = vec![0.0; count];
+    patches.iter().zip(&links.areas).for_each(|(&patch, area)| areas[patch as usize] += area);
+    let mut merged = Links { nodes, ends, conductances: Vec::new(), areas };
     merged.conductances =
         (0..widths.len()).map(|link| widths[link] / merged.length(link).max(0.1 * CELL)).collect();
     merged

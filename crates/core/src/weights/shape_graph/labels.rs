@@ -31,6 +31,11 @@ const BATCH: usize = 128;
 const WIDTH: usize = 256;
 const STEPS: usize = 1000;
 const RATE: f64 = 8e-3;
+/// What is nearer to a control point along the shape than this part of the way to any other follows it: has at least [`OWN`] of the weight.
+const NEAR: f64 = 0.5;
+/// Up to this part of the way, less and less.
+const NEAR_END: f64 = 0.75;
+const OWN: f64 = 0.55;
 /// A distance: what is nearer is on the control point.
 const LEAST: f64 = 1e-6;
 /// Of walks: fewer are rounding.
@@ -117,7 +122,11 @@ pub fn labels(
     for node in chosen {
         let share = (REACH * spacing / along.far[node].max(LEAST)).min(1.0).powi(4);
         let of_node = &met[node * p.len()..][..p.len()];
-        logits.extend(logits_of(&links.nodes[node], &p, of_node, share));
+        let mut of_node = logits_of(&links.nodes[node], &p, of_node, share);
+        let own =
+            OWN * ((NEAR_END - along.far[node] / along.second[node]) / (NEAR_END - NEAR)).clamp(0.0, 1.0);
+        follow(&mut of_node, along.nearest[node] as usize, own);
+        logits.extend(tailed(&of_node));
         let x = &links.nodes[node];
         places.extend((0..dim).map(|k| x[k] * frame.half + frame.centre[k]));
     }
@@ -135,20 +144,33 @@ fn inside(frame: &Frame, x: &[f64]) -> Position {
 
 /// The logits of the control points `p` at the place `x`: of what walks say, a `share`; the rest is of the distance in space.
 fn logits_of(x: &Position, p: &[Position], met: &[f64], share: f64) -> Vec<f64> {
-    let logits: Vec<f64> = p
-        .iter()
+    p.iter()
         .zip(met)
         .map(|(p, met)| {
             let straight = squared(x, p).sqrt().max(LEAST).ln();
             share * POWER * met.max(LEAST_SHARE).ln() - (1.0 - share) * EXPONENT * straight
         })
-        .collect();
+        .collect()
+}
+
+/// Raises the logit of `point` so that it has at least the weight `own`. Walks say nearly always more; where a soup misleads them, distances
+/// have the last word.
+fn follow(logits: &mut [f64], point: usize, own: f64) {
+    let others = logits.iter().enumerate().filter(|(other, _)| *other != point).map(|(_, logit)| *logit);
+    let most = others.clone().fold(f64::NEG_INFINITY, f64::max);
+    if own > 0.0 && most > f64::NEG_INFINITY {
+        let sum: f64 = others.map(|logit| (logit - most).exp()).sum();
+        logits[point] = logits[point].max(most + (sum * own / (1.0 - own)).ln());
+    }
+}
+
+/// Logits below the largest, which becomes 0; those far below it higher than they were.
+fn tailed(logits: &[f64]) -> impl Iterator<Item = f64> + '_ {
     let most = logits.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let tailed = |logit: f64| {
+    logits.iter().map(move |logit| {
         let below = most - logit;
         -below.min(KEPT) - TAIL * ((below - KEPT).max(0.0) / TAIL).ln_1p()
-    };
-    logits.into_iter().map(tailed).collect()
+    })
 }
 
 /// Nodes spread evenly over the shape.

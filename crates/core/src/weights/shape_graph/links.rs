@@ -8,6 +8,8 @@ pub(super) struct Links {
     pub(super) nodes: Vec<Position>,
     pub(super) ends: Vec<[u32; 2]>,
     pub(super) conductances: Vec<f64>,
+    /// How much of the surface each node stands for.
+    pub(super) areas: Vec<f64>,
 }
 
 impl Links {
@@ -17,20 +19,10 @@ impl Links {
         squared(&self.nodes[a as usize], &self.nodes[b as usize]).sqrt()
     }
 
-    /// How much of the surface each node stands for: the part of each strip that is nearer to it.
-    pub(super) fn areas(&self) -> Vec<f64> {
-        let mut areas = vec![0.0; self.nodes.len()];
-        for (link, ends) in self.ends.iter().enumerate() {
-            let quarter = 0.25 * self.conductances[link] * self.length(link).powi(2);
-            ends.iter().for_each(|&end| areas[end as usize] += quarter);
-        }
-        areas
-    }
-
-    /// With links that are no edges.
-    pub(super) fn add(&mut self, ends: &[[u32; 2]], conducts: f64) {
-        self.ends.extend_from_slice(ends);
-        self.conductances.resize(self.ends.len(), conducts);
+    /// With a link that is no edge.
+    pub(super) fn add(&mut self, ends: [u32; 2], conducts: f64) {
+        self.ends.push(ends);
+        self.conductances.push(conducts);
     }
 
     /// The number of the connected component of each node, the largest being 0.

@@ -21,61 +21,59 @@ pub(super) struct Reach {
     pub(super) far: Vec<f64>,
     /// Which that is.
     pub(super) nearest: Vec<u32>,
+    /// From each node to the nearest of the others; infinite where there are none.
+    pub(super) second: Vec<f64>,
     /// From each control point to the nearest other; infinite where there is none.
     pub(super) apart: Vec<f64>,
 }
 
-/// The shortest paths from each node to the nearest of `p`, and between these. Those of a control point in the midst of a body lead
+/// The shortest paths from each node to the two nearest of `p`, and between these. Those of a control point in the midst of a body lead
 /// straight to the surface around it.
 ///
 /// Paths take two links at a time, straight from end to end: they need not zigzag.
 pub(super) fn reach(links: &Links, near: &Near, p: &[Position]) -> Reach {
     let neighbours = Neighbours::new(links);
     let count = links.nodes.len();
-    let (mut far, mut nearest) = (vec![f64::INFINITY; count], vec![u32::MAX; count]);
-    let mut apart = vec![f64::INFINITY; p.len()];
-    let around = attached(near, p, AROUND, MOST_AROUND);
+    let mut of_nodes = vec![[(f64::INFINITY, u32::MAX); 2]; count];
     let mut queue = BinaryHeap::new();
-    for (point, node, away) in &around {
-        let away = away.max(LEAST);
-        if away < far[*node as usize] {
-            (far[*node as usize], nearest[*node as usize]) = (away, *point);
-            queue.push(Reverse((Ordered(away), *node)));
-        }
+    let around = attached(near, p, AROUND, MOST_AROUND);
+    for &(point, node, away) in &around {
+        queue.push(Reverse((Ordered(away.max(LEAST)), node, point)));
     }
     let mut steps = Vec::new();
-    while let Some(Reverse((Ordered(away), node))) = queue.pop() {
-        if away > far[node as usize] {
+    while let Some(Reverse((Ordered(away), node, point))) = queue.pop() {
+        // The first to come is the nearest; the second is of another control point.
+        let [first, second] = &mut of_nodes[node as usize];
+        if first.1 == u32::MAX {
+            *first = (away, point);
+        } else if first.1 != point && second.1 == u32::MAX {
+            *second = (away, point);
+        } else {
             continue;
         }
         neighbours.two_steps(links, node, &mut steps);
         for &(other, length) in &steps {
-            if away + length < far[other as usize] {
-                (far[other as usize], nearest[other as usize]) = (away + length, nearest[node as usize]);
-                queue.push(Reverse((Ordered(away + length), other)));
+            let [first, second] = of_nodes[other as usize];
+            if first.1 == u32::MAX || first.1 != point && second.1 == u32::MAX {
+                queue.push(Reverse((Ordered(away + length), other, point)));
             }
         }
     }
-    // The shortest path to another of them crosses once from the nodes nearest to one to those nearest to the other.
-    let mut crosses = |a: u32, b: u32, whole: f64| {
-        if a != b {
-            for point in [a, b] {
-                apart[point as usize] = apart[point as usize].min(whole);
+    // The shortest path to another of them passes a node to which both are nearer than any other.
+    let mut apart = vec![f64::INFINITY; p.len()];
+    for [(near, one), (far, other)] in &of_nodes {
+        if *other != u32::MAX {
+            for point in [one, other] {
+                apart[*point as usize] = apart[*point as usize].min(near + far);
             }
         }
-    };
-    for (point, node, away) in around {
-        crosses(point, nearest[node as usize], away.max(LEAST) + far[node as usize]);
     }
-    for node in 0..count as u32 {
-        let (own, away) = (nearest[node as usize], far[node as usize]);
-        // Only where a neighbour belongs to another.
-        neighbours.two_steps(links, node, &mut steps);
-        for &(other, length) in steps.iter().filter(|(other, _)| *other > node) {
-            crosses(own, nearest[other as usize], away + length + far[other as usize]);
-        }
+    Reach {
+        far: of_nodes.iter().map(|[(far, _), _]| *far).collect(),
+        nearest: of_nodes.iter().map(|[(_, point), _]| *point).collect(),
+        second: of_nodes.iter().map(|[_, (far, _)]| *far).collect(),
+        apart,
     }
-    Reach { far, nearest, apart }
 }
 
 /// The neighbours of each node.
@@ -125,6 +123,12 @@ impl Neighbours {
 struct Ordered(f64);
 
 impl Eq for Ordered {}
+
+impl PartialOrd for Ordered {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
 
 impl Ord for Ordered {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {

@@ -16,9 +16,9 @@ const MOST_MET: usize = 64;
 /// What links of a control point conduct, a cell away; on a node ten times as much.
 const FIRM: f64 = 1.0;
 /// Of the way to the nearest other control point: how far one holds what is nearest to it.
-const HOLD: f64 = 1.2;
-/// How firmly, in the middle, by area over the square of that radius.
-const HELD: f64 = 2.0;
+const HOLD: f64 = 0.8;
+/// How firmly, by area over the square of the distance.
+const HELD: f64 = 0.5;
 
 /// The probability that a random walk from each node meets each of `p` before the others: nodes x m, rows sum to 1.
 ///
@@ -26,8 +26,10 @@ const HELD: f64 = 2.0;
 /// control point i and 0 at the others. It knows how wide the shape is: a walk finds its way from a trunk into a thin leg seldom, and from
 /// the leg to the trunk soon.
 ///
-/// A control point is no needle, at which a harmonic function would be infinitely steep: it holds what is nearest to it, less and less up to
-/// [`HOLD`] of the way to the nearest other one, and a walk may end wherever it does.
+/// A control point is no needle, at which a harmonic function would be infinitely steep: it holds what is nearest to it, and a walk may end
+/// wherever it does: `(L + k) h_i = k_i`, `k_i = HELD a / D^2 (1 - (D / r)^2)^2`, `a` the area that a node stands for, `D` its distance along the
+/// shape, `r` = [`HOLD`] of the way to the nearest other control point. By `1 / D^2` every scale is held alike, whether the shape there is a sheet
+/// or a stick: near the control point `1 - h_i` falls as a power of D in either.
 ///
 /// # Errors
 /// [`Error::Memory`].
@@ -46,11 +48,11 @@ pub(super) fn first_met(
     for (point, node, far) in attached(near, p, MET, MOST_MET) {
         held(node as usize, point, FIRM * CELL / (far + 0.1 * CELL));
     }
-    for (node, area) in links.areas().into_iter().enumerate() {
+    for (node, area) in links.areas.iter().enumerate() {
         let (point, far) = (reach.nearest[node], reach.far[node]);
         let radius = HOLD * reach.apart[point as usize];
         if far < radius {
-            let density = HELD / (radius * radius) * (1.0 - (far / radius).powi(2)).powi(2);
+            let density = HELD / (far * far + CELL * CELL) * (1.0 - (far / radius).powi(2)).powi(2);
             held(node, point, density * area);
         }
     }
