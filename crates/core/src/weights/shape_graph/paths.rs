@@ -135,9 +135,3 @@ impl Ord for Ordered {
         self.0.total_cmp(&other.0)
     }
 }
-
-impl PartialOrd for Ordered {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
