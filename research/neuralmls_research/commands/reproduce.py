@@ -28,8 +28,8 @@ def reproduce(*, items: tuple[str, ...], output: Path, seeds: int, quiet: bool, 
     """Draw the paper's figures and tables from own runs.
 
     \b
-    fig1 fig2 fig3 square fig4 fig5 table1 fig6 fig7 fig8 fig9 fig10 training fourier
-    or all, as without an ITEM. Writes pictures (PNG, SVG, PDF),
+    fig1 fig2 fig3 square fig4 fig5 table1 fig6 fig7 fig8 fig9 fig10 training
+    fourier or all, as without an ITEM. Writes pictures (PNG, SVG, PDF),
     tables (CSV, LaTeX), index.html and numbers.json.
 
     The paper's own shapes are used where $NEURALMLS_DATA has them, ours otherwise.

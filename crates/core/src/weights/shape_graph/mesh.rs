@@ -31,10 +31,11 @@ pub(super) fn merged(x: &[Position], faces: &[[u32; 3]]) -> (Vec<Position>, Vec<
         of_one.iter().for_each(|&vertex| which[vertex as usize] = nodes.len() as u32);
         nodes.push(*place(of_one[0]));
     }
-    let flat = |[a, b, c]: &[u32; 3]| a == b || b == c || a == c;
+    // A face of two places is a line, and holds them together.
+    let point = |[a, b, c]: &[u32; 3]| a == b && b == c;
     let mut faces: Vec<[u32; 3]> =
         faces.iter().map(|face| face.map(|corner| which[corner as usize])).collect();
-    faces.retain(|face| !flat(face));
+    faces.retain(|face| !point(face));
     // A face that is there twice, from either side, is one sheet: it conducts once.
     let corners = |face: &[u32; 3]| {
         let mut corners = *face;
