@@ -98,7 +98,8 @@ def _merged(x: Array, faces: NDArray[Any] | None) -> tuple[Array, Indices]:
         return nodes, np.empty((0, 3), dtype=np.int64)
     named = which.reshape(-1)[faces].astype(np.int64)
     corners = np.sort(named, axis=1)
-    named, corners = (each[(np.diff(corners, axis=1) > 0).all(axis=1)] for each in (named, corners))
+    kept = (np.diff(corners, axis=1) > 0).any(axis=1)  # faces of two places, too: they hold these together
+    named, corners = named[kept], corners[kept]
     return nodes, named[np.sort(np.unique(corners, axis=0, return_index=True)[1])]
 
 
