@@ -40,9 +40,10 @@ rust-lint: tools
 rust-test: tools
 	cargo test --workspace --exclude neuralmls-bindgen --locked -- --show-output
 
+# The same packages as in rust-test, so that nothing is built again.
 rust-simd: tools
-	NEURALMLS_SIMD=avx2 cargo test --locked -p neuralmls-core
-	NEURALMLS_SIMD=portable cargo test --locked -p neuralmls-core
+	NEURALMLS_SIMD=avx2 cargo test --workspace --exclude neuralmls-bindgen --locked
+	NEURALMLS_SIMD=portable cargo test --workspace --exclude neuralmls-bindgen --locked
 
 # The browser editor's crates: they must compile without threads for WebAssembly.
 wasm: wasm-target

@@ -24,7 +24,7 @@ STAGES = {
     "rust-format": "Rust: formatting",
     "rust-lint": "Rust: clippy",
     "rust-test": "Rust: tests",
-    "rust-simd": "Rust: the core's tests with AVX2, and without SIMD",
+    "rust-simd": "Rust: tests with AVX2, and without SIMD",
     "wasm": "Rust: clippy for WebAssembly",
     "package": "Python: environment and package",
     "editor-build": "editor: build",
