@@ -8,13 +8,13 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
 from time import perf_counter
 
 import numpy as np
 
 from benchmarks.rivals import installed
 from benchmarks.threads import THREADS
+from neuralmls_research.experiments.reproduce.provenance import processor
 
 SQUARE = 2048  # a matrix product of this size does little but multiply
 DRAM = 1 << 28  # bytes: far beyond any cache
@@ -58,7 +58,7 @@ def move(read: np.ndarray, source: np.ndarray, target: np.ndarray) -> None:
 def describe() -> dict[str, str | int]:
     """What the record says of the machine."""
     facts: dict[str, str | int] = {
-        "cpu": _cpu(),
+        "cpu": processor(),
         "cores": os.cpu_count() or 0,
         "threads": THREADS,
         "system": f"{platform.system()} {platform.machine()}",
@@ -72,15 +72,6 @@ def describe() -> dict[str, str | int]:
         except PackageNotFoundError:
             facts[name] = "not installed"
     return facts
-
-
-def _cpu() -> str:
-    info = Path("/proc/cpuinfo")
-    if info.is_file():
-        for line in info.read_text().splitlines():
-            if line.startswith("model name"):
-                return line.partition(":")[2].strip()
-    return platform.processor() or platform.machine()
 
 
 def _best(work: Callable[[], object], tries: int) -> float:

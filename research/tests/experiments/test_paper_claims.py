@@ -12,8 +12,9 @@ from neuralmls_research.experiments.reproduce.armadillo_grid import Setting
 from neuralmls_research.experiments.reproduce.classic_sweep import Sweep
 from neuralmls_research.experiments.reproduce.lab import Lab
 from neuralmls_research.experiments.reproduce.outcomes import CLASSIC_LABEL, KPD_LABEL, NEURAL_LABEL, Outcome, table
-from neuralmls_research.experiments.reproduce.report import Report, Verdict
+from neuralmls_research.experiments.reproduce.report import Report
 from neuralmls_research.experiments.reproduce.scatter_cases import Case, wins
+from neuralmls_research.experiments.reproduce.verdicts import Verdict
 
 REPRODUCED, PARTLY, CONTRADICTED = Verdict.REPRODUCED, Verdict.PARTLY, Verdict.CONTRADICTED
 

@@ -26,10 +26,11 @@ from neuralmls_research.experiments.reproduce.lab import Lab
 from neuralmls_research.experiments.reproduce.line import peaks
 from neuralmls_research.experiments.reproduce.outcomes import CLASSIC_LABEL, KPD_LABEL
 from neuralmls_research.experiments.reproduce.page import page
-from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report, Table, Verdict
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Picture, Report, Table
 from neuralmls_research.experiments.reproduce.run import reproduce
 from neuralmls_research.experiments.reproduce.sharp_edges import angles, neighbours, single
 from neuralmls_research.experiments.reproduce.table1_airplane import of_airplane
+from neuralmls_research.experiments.reproduce.verdicts import Ruling, Verdict
 
 SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
 HALVES = np.array([[0, 1, 2], [0, 2, 3]])
@@ -200,9 +201,9 @@ def test_the_page_escapes_what_it_is_given():
         [Picture("a.png", 'x & "y"')],
         [Table("t", "T > 1", ["<m>"], [["&"]])],
         [
-            Claim("1 < 2", "<i>", "<u>", "<b>", Verdict.REPRODUCED, "<s>"),
-            Claim("3 < 2", "", "", "", Verdict.CONTRADICTED, ""),
-            Claim("ours", "", "", "", Verdict.CONTRADICTED, "", ours=True),
+            Claim("1 < 2", "<i>", Ruling("<u>", Verdict.REPRODUCED), "<b>", Conclusions("<s>", "", "")),
+            Claim("3 < 2", "", Ruling("", Verdict.CONTRADICTED), ""),
+            Claim("ours", "", Ruling("", Verdict.CONTRADICTED), "", ours=True),
         ],
         missing=["<all>"],
     )
@@ -215,15 +216,23 @@ def test_the_page_escapes_what_it_is_given():
 
 def test_checks_of_our_own_have_no_part_in_the_papers_verdicts():
     kinds = [(Verdict.REPRODUCED, False), (Verdict.CONTRADICTED, False), (Verdict.CONTRADICTED, True)]
-    html = page({ITEMS[0]: Report("s", claims=[Claim("p", "m", "r", "m", v, "c", ours) for v, ours in kinds])}, "0")
+    html = page(
+        {ITEMS[0]: Report("s", claims=[Claim("p", "m", Ruling("r", v), "m", ours=ours) for v, ours in kinds])}, "0"
+    )
     assert "1 reproduced, 0 partly reproduced, 1 contradicted, 0 cannot be tested here" in html
     assert html.count("Our own check") == 1
+
+
+@pytest.mark.parametrize("verdict", Verdict)
+def test_what_a_reader_is_told_follows_the_verdict(verdict):
+    told = Claim("p", "m", Ruling("r", verdict), "m", Conclusions("yes", "in part", "no")).reader
+    assert told == ["yes", "in part", "no", "Nothing can be concluded from this run."][list(Verdict).index(verdict)]
 
 
 def test_every_claim_has_a_rule_and_a_conclusion_and_every_table_its_own_name(everything):
     reports = everything[1].values()
     for claim in (claim for report in reports for claim in report.claims):
-        assert all((claim.paper, claim.measure, claim.rule, claim.measured, claim.reader)), claim
+        assert all((claim.paper, claim.measure, claim.ruling.rule, claim.measured, claim.reader)), claim
         assert isinstance(claim.verdict, Verdict)
     names = [table.name for report in reports for table in report.tables]
     assert len(set(names)) == len(names)

@@ -3,7 +3,7 @@
 import pytest
 
 from neuralmls_research.experiments.reproduce import verdicts
-from neuralmls_research.experiments.reproduce.report import Verdict
+from neuralmls_research.experiments.reproduce.verdicts import Verdict
 
 REPRODUCED, PARTLY, CONTRADICTED = Verdict.REPRODUCED, Verdict.PARTLY, Verdict.CONTRADICTED
 

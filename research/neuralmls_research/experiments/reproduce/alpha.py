@@ -7,7 +7,7 @@ from statistics import fmean
 from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.classic_sweep import SHOWN, Sweep, classic_sweep
 from neuralmls_research.experiments.reproduce.lab import Lab
-from neuralmls_research.experiments.reproduce.report import Claim, Report
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Report
 from neuralmls_research.experiments.reproduce.words import span
 
 ALPHAS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.8, 1.0, 2.0, 3.0, 4.0, 5.0)
@@ -37,12 +37,10 @@ def _spikes(sweep: Sweep) -> Claim:
         paper="Figure 9: a small alpha gives spikes at the control points, a usual one bends flat parts.",
         measure="A picture in the paper; here the distance of nearest vertices from targets, and the median change of "
         "mean curvature.",
-        rule=ruling.rule,
         measured=f"Distance at alpha {SMALL:g} {behind:.3f}, neural {span(errors, '{:.4f}')}; change of curvature at "
         f"alpha {USUAL:g}: {bent:.3g}, neural {span(curvatures)}.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "Both are seen: a small alpha leaves the surface behind, a usual one bends what is flat.",
             "One of the two is seen clearly.",
             "Neither is seen.",
@@ -56,11 +54,9 @@ def _borders(sweep: Sweep) -> Claim:
     return Claim(
         paper="Figure 9: a large alpha gives sharp borders between what the control points rule.",
         measure="A picture in the paper; here the symmetric Dirichlet energy (4: no deformation).",
-        rule=ruling.rule,
         measured=f"At alpha {LARGE:g} {energy:.2f}, neural {span(neural, '{:.2f}')}.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "Borders are sharper with a large alpha than with neural weights.",
             "It hangs on the seed.",
             "Borders are no sharper than with neural weights.",
@@ -78,13 +74,11 @@ def _none(sweep: Sweep) -> Claim:
     return Claim(
         paper="Figure 9: no alpha makes classic weights as good as neural ones.",
         measure="All measures of the figure's table.",
-        rule=ruling.rule,
         measured=f"With alpha {said} every measure is."
         if near
         else "With every alpha one of the measures is further above.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "The exponent alone does not do it.",
             "",
             "On this chair classic weights with a well-chosen alpha come close to neural ones.",

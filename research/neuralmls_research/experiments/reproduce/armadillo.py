@@ -20,7 +20,7 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     seeds_of,
     table,
 )
-from neuralmls_research.experiments.reproduce.report import Claim, Report, Table
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Report, Table
 from neuralmls_research.experiments.reproduce.subjects import armadillo
 from neuralmls_research.experiments.reproduce.verdicts import Ruling
 from neuralmls_research.experiments.reproduce.words import span
@@ -67,11 +67,9 @@ def _claim(measured: str, ruling: Ruling) -> Claim:
     return Claim(
         paper="Table 1, armadillo: neural 0.412 < ARAP 0.574 < classic 0.578.",
         measure="Mean change of mean curvature; the paper's control points and displacement are not known.",
-        rule=ruling.rule,
         measured=measured,
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "The paper's order comes out whatever the input.",
             "The paper's order hangs on the input.",
             "With the paper's width no input tried has the order. The paper's own input is not known: see the grid.",
@@ -94,12 +92,10 @@ def _of_grid(settings: Sequence[Setting]) -> Claim:
     return Claim(
         paper="Table 1, armadillo: the same order, for inputs and settings that the paper leaves open.",
         measure="Change of mean curvature (mean, median) and of the Laplacian, over a grid of settings.",
-        rule=ruling.rule,
         measured=f"The order appears in {sum(printed)} of {len(printed)} settings ({_share(settings)}). By the paper's "
         f"measure, rigid, at temperature 1: {'; '.join(_of_network(*chosen) for chosen in _networks(settings, 1.0))}.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "The order is the common one, whatever the inputs were.",
             "The order can be had with the network of the published code, narrow and trained for 48 steps, which "
             "leaves control points behind; with the paper's width, or once control points arrive, it is rare.",

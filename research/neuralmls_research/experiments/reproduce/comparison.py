@@ -27,7 +27,7 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     seeds_of,
     table,
 )
-from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Picture, Report
 from neuralmls_research.experiments.reproduce.subjects import Subject
 from neuralmls_research.experiments.reproduce.words import span
 
@@ -110,13 +110,11 @@ def _less(every: Sequence[Compared]) -> Claim:
     return Claim(
         paper="Figure 4: on all four kinds of shapes neural weights distort less than the other methods.",
         measure="The figure prints no number: median change of mean curvature, as means hang on rounding (Table 1).",
-        rule=ruling.rule,
         measured=f"{'; '.join(compared.said('curvature_median') for compared in every)}. Of the mean change "
         f"of mean curvature less in {_count(every, 'curvature')} comparisons, of the Laplacian "
         f"in {_count(every, 'laplacian')}.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "Neural weights distort all four shapes least.",
             f"Not on every shape, or not less than every method: {_lost(every, 'curvature_median')}.",
             "Neural weights distort none of the shapes less.",
@@ -131,12 +129,10 @@ def _manufactured(every: Sequence[Compared]) -> Claim:
     return Claim(
         paper="Abstract: neural weights suit manufactured objects, better than surface and other space-based methods.",
         measure="No number in the paper: median change of mean curvature of the figure's chair, airplane and car.",
-        rule=ruling.rule,
         measured=f"Less in {_count(made, 'curvature_median')} comparisons; of the mean change of mean curvature in "
         f"{_count(made, 'curvature')}, of the Laplacian in {_count(made, 'laplacian')}.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "Most of a manufactured surface bends less with neural weights. Means, which hang on the few places that "
             "bend most, do not always agree.",
             f"Not always: {_lost(made, 'curvature_median')}.",
@@ -162,11 +158,9 @@ def _closer(every: Sequence[Compared]) -> Claim:
     return Claim(
         paper="Figure 4: with neural weights control points come closer to their targets than with the other methods.",
         measure="Mean distance of the control points' nearest vertices from the targets.",
-        rule=ruling.rule,
         measured=f"{'; '.join(compared.said('error') for compared in every)}.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "Neural weights come closest on all four.",
             f"Not on every shape, or not closer than every method: {_lost(every, 'error')}.",
             "Neural weights come closest on none.",
@@ -185,12 +179,10 @@ def _any_shape(every: Sequence[Compared]) -> Claim:
     return Claim(
         paper="Abstract: any surface will do, also a non-manifold one or one in pieces, which surface methods refuse.",
         measure="Which shapes a method deforms at all.",
-        rule=ruling.rule,
         measured=f"Neural weights deform {sum(done)} of {len(done)} shapes; ARAP refuses {sum(refused)} of the "
         f"{len(refused)} manufactured ones.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "A map of space needs no surface. It knows the control points alone, not the shape between them.",
             "Neural weights deform the shapes; the surface method can do some of them too.",
             "Neural weights fail on shapes.",

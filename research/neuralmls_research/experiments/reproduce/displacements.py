@@ -13,7 +13,7 @@ from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.drawing import draw_shapes
 from neuralmls_research.experiments.reproduce.lab import Lab
 from neuralmls_research.experiments.reproduce.outcomes import STEPS
-from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Picture, Report
 from neuralmls_research.experiments.reproduce.subjects import chair
 
 TASKS = ("user_study_1", "user_study_2", "user_study_3")
@@ -69,22 +69,28 @@ def run(lab: Lab) -> Report:
             Claim(
                 paper="The network is trained on the control points alone; then the user drags freely.",
                 measure="Time of the training, and of a displacement.",
-                rule=faster.rule,
                 measured=f"Trained once in {trained:.2f} s, before any displacement; one takes {1000 * frame:.1f} "
                 f"ms (median of "
                 f"three) for {len(subject.positions):,} vertices, on this machine.",
-                verdict=faster.verdict,
-                reader="One training serves all displacements.",
+                ruling=faster,
+                conclusions=Conclusions(
+                    "One training serves all displacements.",
+                    "The training takes as long as a displacement.",
+                    "A displacement takes longer than the training.",
+                ),
             ),
             Claim(
                 paper="Proposition 1: MLS is the same for weights and for normalised weights.",
                 measure="The farthest that a vertex moves, in halves of the longest side.",
-                rule=unchanged.rule,
                 measured=f"Weights multiplied by numbers between 0.05 and 20, another one at each point, move no "
                 f"vertex by more "
                 f"than {difference:.1g} of half of the longest side.",
-                verdict=unchanged.verdict,
-                reader="Weights can be normalised without a change.",
+                ruling=unchanged,
+                conclusions=Conclusions(
+                    "Weights can be normalised without a change.",
+                    "Weights can be normalised, up to rounding that shows.",
+                    "Normalising the weights changes the deformation.",
+                ),
             ),
         ],
         missing=subject.missing,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.classic_sweep import classic_sweep
 from neuralmls_research.experiments.reproduce.lab import Lab
-from neuralmls_research.experiments.reproduce.report import Claim, Report
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Report
 from neuralmls_research.experiments.reproduce.words import span
 
 EPSILONS = (1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
@@ -28,11 +28,9 @@ def run(lab: Lab) -> Report:
         Claim(
             paper="Figure 10: a larger epsilon leaves the control points behind.",
             measure="A picture in the paper; here the mean distance of control points from their targets.",
-            rule=behind.rule,
             measured=f"{errors[0]:.1g} with epsilon {EPSILONS[0]:g}, {errors[-1]:.4f} with {EPSILONS[-1]:g}.",
-            verdict=behind.verdict,
-            reader=verdicts.conclusion(
-                behind,
+            ruling=behind,
+            conclusions=Conclusions(
                 "A larger epsilon costs closeness.",
                 "A larger epsilon costs a little closeness.",
                 "Epsilon costs no closeness.",
@@ -41,11 +39,9 @@ def run(lab: Lab) -> Report:
         Claim(
             paper="Figure 10: no epsilon takes the distortion of classic weights away.",
             measure="A picture in the paper; here the median change of mean curvature.",
-            rule=bent.rule,
             measured=f"{least:.3g} with the best epsilon, neural {span(neural)}.",
-            verdict=bent.verdict,
-            reader=verdicts.conclusion(
-                bent,
+            ruling=bent,
+            conclusions=Conclusions(
                 "Epsilon is no remedy for the bending of flat parts.",
                 "With the best epsilon classic weights bend more, by less than twice.",
                 "With a good epsilon classic weights bend no more than neural ones.",

@@ -19,7 +19,7 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     seeds_of,
     table,
 )
-from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Picture, Report
 from neuralmls_research.experiments.reproduce.subjects import airplane
 from neuralmls_research.experiments.reproduce.words import span
 
@@ -79,12 +79,10 @@ def _claim(found: Sequence[Outcome]) -> Claim:
     return Claim(
         paper="For airplanes, Fourier features with affine maps do better: the setting of the published study.",
         measure="Control-point error and median change of mean curvature.",
-        rule=ruling.rule,
         measured=f"Control-point error {said('error_at_points')}, median change of mean curvature "
         f"{said('curvature_median')}, Dirichlet energy {said('dirichlet')}.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "The study's setting is closer, and distorts less.",
             "The study's setting is closer to the targets, and distorts far more.",
             "The study's setting is neither closer nor less distorted.",

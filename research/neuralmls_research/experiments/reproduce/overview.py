@@ -16,7 +16,7 @@ from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.drawing import COLOURS, NEURAL, plots
 from neuralmls_research.experiments.reproduce.lab import Lab
 from neuralmls_research.experiments.reproduce.outcomes import STEPS
-from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Picture, Report
 from neuralmls_research.experiments.reproduce.subjects import Subject, chair
 
 Array = NDArray[np.float64]
@@ -54,11 +54,14 @@ def run(lab: Lab) -> Report:
                 paper="The network is trained, with cross-entropy, to tell each control point from the others; its "
                 "softmax is the weight.",
                 measure="The least weight that a control point has at its own place, after training.",
-                rule=learned.rule,
                 measured=f"Least over {len(p)} control points, by seed: "
                 f"{', '.join(f'{values.min():.2f}' for values in own)}. A vertex's weights sum to 1 to {apart:.0e}.",
-                verdict=learned.verdict,
-                reader="The pipeline is as drawn: shape and targets are not part of the training.",
+                ruling=learned,
+                conclusions=Conclusions(
+                    "The pipeline is as drawn: shape and targets are not part of the training.",
+                    "It depends on the seed whether the network has learned all control points.",
+                    "The network has not learned its control points.",
+                ),
             )
         ],
         numbers={"weight_at_own_place": [values.tolist() for values in own], "moves_furthest": chosen},

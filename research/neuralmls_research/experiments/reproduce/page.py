@@ -7,7 +7,8 @@ from html import escape
 
 from neuralmls_research.experiments.reproduce.formats import PICTURES, TABLES, files
 from neuralmls_research.experiments.reproduce.items import Item
-from neuralmls_research.experiments.reproduce.report import Claim, Report, Table, Verdict
+from neuralmls_research.experiments.reproduce.report import Claim, Report, Table
+from neuralmls_research.experiments.reproduce.verdicts import Verdict
 
 MARKS = {Verdict.REPRODUCED: "yes", Verdict.PARTLY: "part", Verdict.CONTRADICTED: "no", Verdict.UNTESTABLE: "open"}
 STYLE = """
@@ -102,7 +103,7 @@ def verdicts(reports: Mapping[Item, Report]) -> Table:
             ("Our own check. " if c.ours else "") + c.paper,
             c.verdict.value,
             c.measure,
-            c.rule,
+            c.ruling.rule,
             c.measured,
             c.reader,
         ]
@@ -116,7 +117,7 @@ def _claim_row(claim: Claim, item: Item) -> str:
     verdict = f'<span class="{MARKS[claim.verdict]}">{claim.verdict.value}</span>'
     own = "<em>Our own check.</em> " if claim.ours else ""
     said = f'{own}{escape(claim.paper)} (<a href="#{item.name}">{item.name}</a>)'
-    measure = f'{escape(claim.measure)}<br><span class="rule">Rule: {escape(claim.rule)}</span>'
+    measure = f'{escape(claim.measure)}<br><span class="rule">Rule: {escape(claim.ruling.rule)}</span>'
     row = "".join(f"<td>{cell}</td>" for cell in (said, verdict, measure, escape(claim.measured), escape(claim.reader)))
     return f'<tr class="ours">{row}</tr>' if claim.ours else f"<tr>{row}</tr>"
 

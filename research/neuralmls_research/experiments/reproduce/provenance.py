@@ -40,7 +40,7 @@ def code(folder: Path) -> dict[str, Any]:
 def machine() -> dict[str, Any]:
     """Processor, cores, system and versions."""
     return {
-        "processor": _processor(),
+        "processor": processor(),
         "cores": os.cpu_count(),
         "system": f"{platform.system()} {platform.release()}, {platform.machine()}",
         "python": platform.python_version(),
@@ -64,7 +64,7 @@ def _version(name: str) -> str | None:
         return None
 
 
-def _processor() -> str:
+def processor() -> str:
     """The processor's name: Linux alone keeps it from `platform`."""
     info = Path("/proc/cpuinfo")
     if info.is_file():

@@ -3,17 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from enum import StrEnum
-from typing import Any
+from typing import Any, NamedTuple
 
-
-class Verdict(StrEnum):
-    """What a rule says of the numbers."""
-
-    REPRODUCED = "reproduced"
-    PARTLY = "partly reproduced"
-    CONTRADICTED = "contradicted"
-    UNTESTABLE = "cannot be tested here"
+from neuralmls_research.experiments.reproduce.verdicts import Ruling, Verdict
 
 
 @dataclass(frozen=True)
@@ -32,6 +24,14 @@ class Picture:
     caption: str
 
 
+class Conclusions(NamedTuple):
+    """What a reader should conclude from each verdict, whichever it turns out to be."""
+
+    reproduced: str
+    partly: str
+    contradicted: str
+
+
 @dataclass(frozen=True)
 class Claim:
     """Something that the paper says, and what a run gave.
@@ -42,25 +42,47 @@ class Claim:
         The paper's sentence in our words, with its number where it prints one.
     measure : str
         The paper's measure, on the paper's axis.
-    rule : str
-        By what the verdict falls, written before any run: a rule of `verdicts`.
+    ruling : Ruling
+        By what the verdict falls, written before any run, and what it says of the numbers: from `verdicts`.
     measured : str
         What this run gave, with measures of our own beside; or why nothing could be measured.
-    verdict : Verdict
-        What the rule says of the numbers.
-    reader : str
-        What a reader should conclude.
+    conclusions : Conclusions
+        What a reader should conclude; None of what can never be tested here.
     ours : bool
         Whether this is a check of our own, which the paper says nothing of: it has no part in the paper's verdicts.
     """
 
     paper: str
     measure: str
-    rule: str
+    ruling: Ruling
     measured: str
-    verdict: Verdict
-    reader: str
+    conclusions: Conclusions | None = None
     ours: bool = False
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the rule says of the numbers."""
+        return self.ruling.verdict
+
+    @property
+    def reader(self) -> str:
+        """What a reader should conclude from this verdict."""
+        if self.conclusions is None or self.verdict is Verdict.UNTESTABLE:
+            return "Nothing can be concluded from this run."
+        told = {Verdict.REPRODUCED: self.conclusions.reproduced, Verdict.PARTLY: self.conclusions.partly}
+        return told.get(self.verdict, self.conclusions.contradicted)
+
+    def for_machines(self) -> dict[str, Any]:
+        """All of it by name, as JSON holds it."""
+        return {
+            "paper": self.paper,
+            "measure": self.measure,
+            "rule": self.ruling.rule,
+            "measured": self.measured,
+            "verdict": self.verdict,
+            "reader": self.reader,
+            "ours": self.ours,
+        }
 
 
 @dataclass(frozen=True)

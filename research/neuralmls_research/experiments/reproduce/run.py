@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import asdict
 from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any
@@ -68,7 +67,7 @@ def _items(reports: dict[Item, Report]) -> dict[str, Any]:
         item.name: {
             "title": item.title,
             "setting": report.setting,
-            "claims": [asdict(claim) for claim in report.claims],
+            "claims": [claim.for_machines() for claim in report.claims],
             "missing": report.missing,
             "numbers": report.numbers,
         }

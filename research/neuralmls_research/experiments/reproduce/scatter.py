@@ -19,7 +19,7 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     numbers,
     ours,
 )
-from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Picture, Report
 from neuralmls_research.experiments.reproduce.scatter_cases import (
     MEASURED,
     PAPERS,
@@ -77,11 +77,9 @@ def _distortion(category: str, cases: Sequence[Case]) -> Claim:
     return Claim(
         paper=f"Figure 6, {category}s: neural weights distort less than the other methods.",
         measure="Mean change of the Laplacian's length, the figure's axis.",
-        rule=ruling.rule,
         measured=_changes(cases) if cases else "Nothing: no such shape is here.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "On this axis neural weights distort less in this category.",
             "It depends on the displacement, and on the method compared with: look at the rows.",
             "On this axis neural weights distort less than another method in no deformation of the category.",
@@ -105,11 +103,9 @@ def _closeness(cases: Sequence[Case]) -> Claim:
     return Claim(
         paper="Figure 6: with neural weights control points come closer to their targets than with the other methods.",
         measure="Mean distance of the control points' nearest vertices from the targets, the figure's axis.",
-        rule=ruling.rule,
         measured=f"Closer than {_against('error', cases)}.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "Neural weights come closest.",
             "Neural weights mostly come closer than 1/d and KeypointDeformer, not always.",
             "Neural weights do not come closer.",
@@ -126,12 +122,10 @@ def _corner(cases: Sequence[Case]) -> Claim:
     return Claim(
         paper="Figure 6: neural weights are the best trade of distortion against control-point error.",
         measure="Both axes of the figure.",
-        rule=ruling.rule,
         measured=f"So it is in {sum(free)} of {len(free)}. Neural weights have less than {CLASSIC_LABEL} on both axes "
         f"in {both} of {len(cases)}.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "Whoever wants less distortion has to accept a larger distance, and the other way round.",
             "Mostly a trade: less distortion for a larger distance. Seldom is one method better on both axes.",
             "Another method is better on both axes everywhere.",
@@ -144,11 +138,9 @@ def _steeper(cases: Sequence[Case]) -> Claim:
     return Claim(
         paper="Neural weights come closer to the targets than classic ones with the study's exponent, too.",
         measure="Mean distance of the control points' nearest vertices from the targets.",
-        rule=ruling.rule,
         measured=f"Closer in {wins(cases, 'error', STEEPER_LABEL)}.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "The network comes closer than a steeper exponent does.",
             "Closeness hangs on the exponent as much as on the network: 1/d^2 comes about as close.",
             "A steeper exponent comes closer than the network.",
@@ -170,10 +162,13 @@ def _narrower(cases: Sequence[Case]) -> Claim:
     return Claim(
         paper="The narrow network of the published code is better than classic weights on both axes.",
         measure="Both axes of the figure.",
-        rule=ruling.rule,
         measured=f"Less change of the Laplacian in {less}, closer to the targets in {closer}.",
-        verdict=ruling.verdict,
-        reader="It distorts little because it leaves the control points behind: compare the two axes, never one alone.",
+        ruling=ruling,
+        conclusions=Conclusions(
+            "It is better on both axes.",
+            "Better on one axis, not on the other: compare the two, never one alone.",
+            "It is better on neither axis.",
+        ),
         ours=True,
     )
 
@@ -185,10 +180,9 @@ def _study() -> Claim:
         paper="Table 2, the user study: of three results (neural weights, classic ones, KeypointDeformer) for each of "
         "27 deformations of chairs, airplanes and cars, people find that of neural weights the most realistic.",
         measure="Share of the answers.",
-        rule=ruling.rule,
-        measured="Nothing: neuralmls study builds such a study and evaluates its answers.",
-        verdict=ruling.verdict,
-        reader="Nothing is known of it from here; the measures above say nothing of what people find realistic.",
+        measured="Nothing: neuralmls study builds such a study and evaluates its answers; the measures above say "
+        "nothing of what people find realistic.",
+        ruling=ruling,
     )
 
 

@@ -11,7 +11,7 @@ from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.drawing import add_bar, draw_shapes
 from neuralmls_research.experiments.reproduce.lab import Lab, classic_title
 from neuralmls_research.experiments.reproduce.outcomes import SEED, STEPS, by_methods, group
-from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report, Table
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Picture, Report, Table
 from neuralmls_research.experiments.reproduce.subjects import plain_chair
 from neuralmls_research.experiments.reproduce.words import span
 from neuralmls_research.metrics.triangles import normals
@@ -95,10 +95,13 @@ def _claim(measured: dict[str, dict[str, list[float]]]) -> Claim:
     return Claim(
         paper="Neural weights keep flat sides flat and sharp edges straight where classic ones bend them.",
         measure="The mean bend between triangles that were coplanar, and the mean change of the angle at sharp edges.",
-        rule=flatter.rule,
         measured=f"{said}.",
-        verdict=flatter.verdict,
-        reader="On this chair flat sides stay flatter than with either exponent that the published scripts use.",
+        ruling=flatter,
+        conclusions=Conclusions(
+            "On this chair flat sides stay flatter than with either exponent that the published scripts use.",
+            "On this chair flat sides or sharp edges stay better than with one exponent, not clearly with both.",
+            "On this chair flat sides and sharp edges stay no better than with classic weights.",
+        ),
     )
 
 

@@ -6,7 +6,7 @@ from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.armadillo import of_armadillo
 from neuralmls_research.experiments.reproduce.lab import Lab
 from neuralmls_research.experiments.reproduce.outcomes import BEYOND, STEPS, narrow
-from neuralmls_research.experiments.reproduce.report import Claim, Report
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Report
 from neuralmls_research.experiments.reproduce.table1_airplane import of_airplane
 from neuralmls_research.experiments.reproduce.table1_chairs import of_cars, of_chairs
 
@@ -32,11 +32,9 @@ def _narrow(of_shapes: list[verdicts.Ruling]) -> Claim:
     return Claim(
         paper="With the published code's narrow network all three orders of Table 1 come out.",
         measure="Mean change of mean curvature.",
-        rule=ruling.rule,
         measured=f"{'; '.join(f'{name}: {one.verdict.value}' for name, one in said)}.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "Table 1 fits the network of the published code, which leaves control points behind (Figure 6).",
             "Table 1 fits the network of the published code in part, which leaves control points behind (Figure 6).",
             "Table 1 does not fit the network of the published code either.",

@@ -25,7 +25,7 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     seeds_of,
     table,
 )
-from neuralmls_research.experiments.reproduce.report import Claim, Report, Table
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Report, Table
 from neuralmls_research.experiments.reproduce.subjects import Subject, airplane
 from neuralmls_research.experiments.reproduce.verdicts import Ruling
 from neuralmls_research.experiments.reproduce.words import span
@@ -133,11 +133,9 @@ def _claim(measured: str, ruling: Ruling) -> Claim:
     return Claim(
         paper="Table 1, airplane: neural 1764 < classic 1880 < KeypointDeformer 2142.",
         measure="Mean change of mean curvature, in single precision as the published code computes.",
-        rule=ruling.rule,
         measured=measured,
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "The paper's order and its ratio of neural to classic come out, with every seed.",
             "Neural weights are not clearly the first, or the others stand in another order.",
             "Another method distorts the airplane less.",
@@ -150,11 +148,9 @@ def _rounding(changes: Changes) -> Claim:
     return Claim(
         paper="The airplane's order does not hang on rounding.",
         measure="Mean change of mean curvature, in double precision.",
-        rule=ruling.rule,
         measured=f"{_said(changes.double)}; medians {_said(changes.median, '{:.1f}')}.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "It does not.",
             "It does in part: look at the medians.",
             "It does: KeypointDeformer's excess is rounding on triangles almost without area. The medians keep the "

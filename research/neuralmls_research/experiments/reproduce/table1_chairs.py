@@ -21,7 +21,7 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     rivals,
     seeds_of,
 )
-from neuralmls_research.experiments.reproduce.report import Claim, Report, Table
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Report, Table
 from neuralmls_research.experiments.reproduce.subjects import Subject, cars, chairs
 from neuralmls_research.experiments.reproduce.verdicts import Ruling
 from neuralmls_research.experiments.reproduce.words import span
@@ -95,13 +95,11 @@ def _chairs(measured: Measured) -> Claim:
     return Claim(
         paper="Table 1, chair: neural weights distort less than classic ones (and than KeypointDeformer).",
         measure="Mean change of mean curvature.",
-        rule=ruling.rule,
         measured=f"Less in {_wins(measured, CLASSIC_LABEL)}; {measured[0][0].label}: neural "
         f"{span(first[NEURAL_LABEL])}, classic {span(first[CLASSIC_LABEL])}. Of the Laplacian, less in "
         f"{_wins(measured, CLASSIC_LABEL, 'laplacian')}. KeypointDeformer has no weights for chairs here.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "On chairs neural weights distort less than classic ones, by this measure.",
             "On chairs neural weights distort less with nearly every displacement, by this measure.",
             "On chairs neural weights do not distort less.",
@@ -116,13 +114,11 @@ def _cars(measured: Measured) -> Claim:
     return Claim(
         paper="On cars neural weights distort less than classic ones and KeypointDeformer, as in Table 1.",
         measure="Mean change of mean curvature.",
-        rule=ruling.rule,
         measured="Less than "
         + ", ".join(f"{label} in {_wins(measured, label)}" for label in rivals_here)
         + f", on {measured[0][0].origin.partition(',')[0]}.",
-        verdict=ruling.verdict,
-        reader=verdicts.conclusion(
-            ruling,
+        ruling=ruling,
+        conclusions=Conclusions(
             "So it is on this car.",
             "Less than KeypointDeformer; against classic weights it depends on the displacement.",
             "Not so on this car.",

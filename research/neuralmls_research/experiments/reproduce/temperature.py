@@ -17,7 +17,7 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     numbers,
     table,
 )
-from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report, Verdict
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Picture, Report
 from neuralmls_research.experiments.reproduce.subjects import Subject, chairs, plain_chair
 from neuralmls_research.metrics import strain
 
@@ -124,11 +124,11 @@ def _claim(found: dict[str, list[Outcome]], others: dict[str, Trade]) -> Claim:
     trade = verdicts.together(
         verdicts.in_all(
             "the control-point error rises with every step of T, for every chair and seed,",
-            [verdict is Verdict.REPRODUCED for verdict in rising],
+            [verdict is verdicts.Verdict.REPRODUCED for verdict in rising],
         ),
         verdicts.in_all(
             "the Dirichlet energy falls with every step of T, for every chair and seed,",
-            [verdict is Verdict.REPRODUCED for verdict in falling],
+            [verdict is verdicts.Verdict.REPRODUCED for verdict in falling],
         ),
     )
     said = []
@@ -138,13 +138,16 @@ def _claim(found: dict[str, list[Outcome]], others: dict[str, Trade]) -> Claim:
             f"{name}: error {low['error_at_points']:.1g} to {high['error_at_points']:.3f}, energy "
             f"{low['dirichlet']:.4g} to {high['dirichlet']:.4g}"
         )
-    held = sum(verdict is Verdict.REPRODUCED for verdict in falling)
+    held = sum(verdict is verdicts.Verdict.REPRODUCED for verdict in falling)
     return Claim(
         paper="The temperature trades interpolation (low) for smooth approximation (high).",
         measure="Control-point error, and symmetric Dirichlet energy (4 is none), from T = 0.2 to 5.",
-        rule=trade.rule,
         measured="; ".join(said) + f". The energy falls throughout in {held} of {len(falling)} sweeps.",
-        verdict=trade.verdict,
-        reader="The temperature chooses between the two. On some tasks the energy, which few slivers can make, rises "
-        "between low temperatures before it falls.",
+        ruling=trade,
+        conclusions=Conclusions(
+            "The temperature chooses between the two.",
+            "The temperature chooses between the two in most sweeps. In some the energy, which few slivers can make, "
+            "rises between low temperatures before it falls.",
+            "The temperature does not choose between the two.",
+        ),
     )

@@ -19,7 +19,7 @@ from neuralmls_research.experiments.reproduce.outcomes import (
     table,
 )
 from neuralmls_research.experiments.reproduce.outcomes import STEPS as PUBLISHED_STEPS
-from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Picture, Report
 from neuralmls_research.experiments.reproduce.subjects import chair
 from neuralmls_research.experiments.reproduce.words import span
 
@@ -88,12 +88,10 @@ def run(lab: Lab) -> Report:
             Claim(
                 paper="Seeds differ less than methods do.",
                 measure="Control-point error and median change of mean curvature.",
-                rule=steady.rule,
                 measured=f"Five seeds: control-point error {span(errors.tolist(), '{:.4f}')}, median change of mean "
                 f"curvature {span(distortion.tolist())}; {CLASSIC_LABEL} {rival:.3g}.",
-                verdict=steady.verdict,
-                reader=verdicts.conclusion(
-                    steady,
+                ruling=steady,
+                conclusions=Conclusions(
                     "On this chair the difference between the methods is larger than that between seeds.",
                     "Seeds differ about as much as methods do in one of the measures: run several.",
                     "Seeds differ as much as methods do: one seed says nothing.",
@@ -113,12 +111,10 @@ def run(lab: Lab) -> Report:
             Claim(
                 paper="With the paper's width the published code's 48 steps are enough, with the code's own not.",
                 measure="The weight that a control point has at its own place.",
-                rule=enough.rule,
                 measured=f"Own weight {_own_weight(wide):.2f} and {_own_weight(narrow):.2f}; control-point error "
                 f"{missed[1024]:.3f} and {missed[128]:.3f}.",
-                verdict=enough.verdict,
-                reader=verdicts.conclusion(
-                    enough,
+                ruling=enough,
+                conclusions=Conclusions(
                     "Take the paper's width, or train longer: a control point must own its place.",
                     "Width is not all that counts here.",
                     "The width does not decide it here.",

@@ -10,14 +10,22 @@ Numbers of trained networks come as one value a seed. "Less" is always better: h
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from enum import StrEnum
 from itertools import pairwise
 from statistics import fmean
 from typing import NamedTuple, TypeAlias
 
-from neuralmls_research.experiments.reproduce.report import Verdict
-
 Seeds: TypeAlias = Sequence[float]  # a value for each seed; one where nothing is drawn by lot
 Pair: TypeAlias = tuple[Seeds, float]  # neural weights, and another method
+
+
+class Verdict(StrEnum):
+    """What a rule says of the numbers."""
+
+    REPRODUCED = "reproduced"
+    PARTLY = "partly reproduced"
+    CONTRADICTED = "contradicted"
+    UNTESTABLE = "cannot be tested here"
 
 
 class Ruling(NamedTuple):
@@ -169,12 +177,6 @@ def together(*rulings: Ruling) -> Ruling:
 def untestable(need: str) -> Ruling:
     """A claim that nothing here can test, and what that would need."""
     return Ruling(f"None can be applied: {need}.", Verdict.UNTESTABLE)
-
-
-def conclusion(ruling: Ruling, reproduced: str, partly: str, contradicted: str) -> str:
-    """What a reader should conclude, whatever the verdict turns out to be."""
-    said = {Verdict.REPRODUCED: reproduced, Verdict.PARTLY: partly, Verdict.CONTRADICTED: contradicted}
-    return said.get(ruling.verdict, "Nothing can be concluded from this run.")
 
 
 def _counted(rule: str, holds: Sequence[bool], least: int = 1) -> Ruling:

@@ -14,7 +14,7 @@ from neuralmls_research.experiments.reproduce import line, verdicts
 from neuralmls_research.experiments.reproduce.drawing import COLOURS, draw_weights, plots
 from neuralmls_research.experiments.reproduce.lab import Lab, classic_title
 from neuralmls_research.experiments.reproduce.line import AFTER, BEFORE, MOVED, TEMPERATURES, X, weights_on_line
-from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Picture, Report
 from neuralmls_research.experiments.reproduce.words import span
 
 Array = NDArray[np.float64]
@@ -144,52 +144,67 @@ def _claims(n: dict[str, Any]) -> list[Claim]:
             "change. Classic ones depend on the distance to one control point, and do not.",
             measure="The largest change, over the line, of a weight of a control point that stays: neural ones after "
             "the softmax, classic ones raw, as Figure 2 draws them.",
-            rule=aware.rule,
             measured=f"Neural {span(stay['neural'])} (of 1); raw classic {stay['classic_raw']:g}, exactly. "
             f"Normalised, classic ones change by {stay['classic_normalised']:.2f}.",
-            verdict=aware.verdict,
-            reader="True of raw weights, by their formula. But moving least squares uses weights through their ratios "
-            "alone (Proposition 1), and normalised classic weights change too: the figure compares curves that are "
-            "not drawn alike.",
+            ruling=aware,
+            conclusions=Conclusions(
+                "True of raw weights, by their formula. But moving least squares uses weights through their ratios "
+                "alone (Proposition 1), and normalised classic weights change too: the figure compares curves that are "
+                "not drawn alike.",
+                "Not with every seed.",
+                "Neural weights change no more than classic ones.",
+            ),
         ),
         Claim(
             paper="Classic weights peak at their control points, and are flat and low between them.",
             measure="Where a raw classic weight is largest, and how large the largest of them is where it is least.",
-            rule=at_points.rule,
             measured=f"The peaks are off by at most {max(n['raw_peak_off_by']):.2g} and up to "
             f"{max(n['raw_peak']):.3g} high; between control points the largest weight falls to "
             f"{n['raw_between']:.2g}.",
-            verdict=at_points.verdict,
-            reader="The height of the peaks is 1/epsilon, and says nothing of a deformation: it cancels.",
+            ruling=at_points,
+            conclusions=Conclusions(
+                "The height of the peaks is 1/epsilon, and says nothing of a deformation: it cancels.",
+                "Some peaks are beside their control points.",
+                "The peaks are beside their control points.",
+            ),
         ),
         Claim(
             paper="Neural weights are piecewise smooth: each control point rules one piece, with a soft border.",
             measure="Peaks of a neural weight; share of the line that is ruled, where one control point has over 0.9 "
             "of all weight.",
-            rule=smooth.rule,
             measured=f"Neural: {span(most['neural'])} peak, {span(ruled['neural'], '{:.0%}')} of the line ruled, "
             f"steepest {span(steep['T = 1'])} a unit. Classic: {most['classic_raw']} peak raw, up to "
             f"{most['classic_normalised']} normalised, {ruled['classic_normalised']:.0%} ruled.",
-            verdict=smooth.verdict,
-            reader="Plateaus with soft borders. Raw classic weights have one peak each as well; those behind other "
-            "control points come with the normalisation.",
+            ruling=smooth,
+            conclusions=Conclusions(
+                "Plateaus with soft borders. Raw classic weights have one peak each as well; those behind other "
+                "control points come with the normalisation.",
+                "Plateaus, but not one to each control point with every seed.",
+                "No plateaus: neural weights rule no more of the line than classic ones.",
+            ),
         ),
         Claim(
             paper="The temperature sets how steep the borders are.",
             measure="The steepest place of a neural weight, softmax(logits / T), at T = 0.2, 1 and 5.",
-            rule=sharper.rule,
             measured=", ".join(f"{label}: {span(values)}" for label, values in steep.items()) + " a unit.",
-            verdict=sharper.verdict,
-            reader="Below 1 pieces with edges, far above 1 hills that no longer own their control point.",
+            ruling=sharper,
+            conclusions=Conclusions(
+                "Below 1 pieces with edges, far above 1 hills that no longer own their control point.",
+                "Mostly, not between all temperatures and seeds.",
+                "The temperature does not set it.",
+            ),
             ours=True,
         ),
         Claim(
             paper="A move is felt nearby: far away neural weights change less than classic ones.",
             measure="The largest change left of the second control point, by a move of the fourth, normalised.",
-            rule=nearby.rule,
             measured=f"Neural {span(far['neural'])}, classic {far['classic_normalised']:.3f}.",
-            verdict=nearby.verdict,
-            reader="Most networks keep a change to its surroundings, but nothing in the training makes them.",
+            ruling=nearby,
+            conclusions=Conclusions(
+                "With these seeds a change stays in its surroundings, though nothing in the training makes it.",
+                "Some networks keep a change to its surroundings, but nothing in the training makes them.",
+                "Far away neural weights change more than classic ones.",
+            ),
             ours=True,
         ),
     ]

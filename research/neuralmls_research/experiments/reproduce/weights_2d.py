@@ -12,7 +12,7 @@ from neuralmls import InverseDistanceWeights, NeuralWeights, softmax
 from neuralmls_research.experiments.reproduce import verdicts
 from neuralmls_research.experiments.reproduce.drawing import plots
 from neuralmls_research.experiments.reproduce.lab import Lab, classic_title
-from neuralmls_research.experiments.reproduce.report import Claim, Picture, Report
+from neuralmls_research.experiments.reproduce.report import Claim, Conclusions, Picture, Report
 from neuralmls_research.experiments.reproduce.words import span
 
 Array = NDArray[np.float64]
@@ -126,12 +126,15 @@ def _claim(n: dict[str, Any]) -> Claim:
         paper="In 2D too, moving one control point changes the weights of all to fit the new configuration.",
         measure="The largest change of a weight of a control point that stays, after the softmax; and the share of the "
         "square where one control point has over 0.9 of all weight.",
-        rule=changed.rule,
         measured=f"Change: neural {span(stay['neural'])}, classic {stay['classic_raw']:g} raw and "
         f"{stay['classic_normalised']:.2f} normalised. Over 0.9 on {span(own['neural'], '{:.0%}')}, classic "
         f"{own['classic']:.0%}. The one that moves rules {span(ruled['before'], '{:.0%}')} of the square before, "
         f"{span(ruled['after'], '{:.0%}')} after.",
-        verdict=changed.verdict,
-        reader="Regions re-form as a whole. As on the line, normalised classic weights change as well; what they lack "
-        "is a region of their own.",
+        ruling=changed,
+        conclusions=Conclusions(
+            "Regions re-form as a whole. As on the line, normalised classic weights change as well; what they lack "
+            "is a region of their own.",
+            "Weights change, but not with every seed, or without regions of their own.",
+            "The weights do not fit themselves to the new configuration.",
+        ),
     )
