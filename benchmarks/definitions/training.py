@@ -1,6 +1,8 @@
-"""Training from scratch: 48 steps, width 1024, ten control points; the times are of one step."""
+"""Training from scratch: 48 steps, width 1024, ten control points; the times are of one step. And what hundreds take."""
 
 from __future__ import annotations
+
+import numpy as np
 
 import neuralmls as nm
 from benchmarks import inputs
@@ -12,6 +14,8 @@ BAR = 4.0  # times faster than PyTorch
 STEPS = 48
 WIDTH = 1024
 LOSS = 0.2
+MANY = {300: 3.0, 1000: 15.0}  # control points: seconds of a whole default fit
+OWNED = 0.9  # of the weight, at a control point's own place
 
 
 def run(setting: Setting) -> Outcome:
@@ -50,4 +54,19 @@ def run(setting: Setting) -> Outcome:
         )
         for rival in contenders[1:]
     ] or [Row("training, a step", seconds["ours"], limit=limit)]
+    for count, most in MANY.items():
+        row, sure = many(setting, setting.size(count), most)
+        rows.append(row)
+        checked.append(sure)
     return Outcome("training", rows, checked, [])
+
+
+def many(setting: Setting, count: int, most: float) -> tuple[Row, str]:
+    """A fit of many control points at random in a box, until each owns its place."""
+    p = np.random.default_rng(inputs.SEED).uniform(-1, 1, size=(count, 3))
+    weights = nm.NeuralWeights.fit(p, seed=inputs.SEED)
+    others = 1 - float(np.diagonal(nm.softmax(weights.logits(p))).min())
+    ours = Contender("ours", lambda _: nm.NeuralWeights.fit(p, seed=inputs.SEED))
+    seconds = interleaved([ours], setting.rounds)["ours"]
+    what = f"default fit, {count} control points"
+    return Row(what, seconds, bar=setting.bar(most)), check(f"{what}: what others have", others, 1 - OWNED)

@@ -39,6 +39,6 @@ pub use machine::{memory, progress};
 pub use mls::{best_rotation, Transform, ANCHOR_WEIGHT, RIDGE};
 pub use probe::{places, Look, Probe, PLACES};
 pub use weights::inverse_distance::InverseDistance;
-pub use weights::network::{train, Layer, Network, Schedule, Trained, Training};
+pub use weights::network::{train, Layer, Network, Schedule, Trained, Training, MOST_CONTROL_POINTS};
 pub use weights::shape_graph::{labels, Labels, Shape};
 pub use weights::Weights;

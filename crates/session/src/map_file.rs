@@ -16,7 +16,7 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use neuralmls_core::{Frame, InverseDistance, Layer, Network, Trained, Weights};
+use neuralmls_core::{Frame, InverseDistance, Layer, Network, Trained, Weights, MOST_CONTROL_POINTS};
 use safetensors::tensor::{serialize, Dtype, SafeTensors, View};
 use serde_json::{json, Value};
 
@@ -141,9 +141,9 @@ fn parse(bytes: &[u8]) -> Result<(Weights, Option<String>), Error> {
     }
     let shape = arrays.shape("control_points", 2)?;
     let (m, dim) = (shape[0], shape[1]);
-    if !(1..=3).contains(&dim) || !(1..=1000).contains(&m) {
+    if !(1..=3).contains(&dim) || !(1..=MOST_CONTROL_POINTS).contains(&m) {
         return Err(broken(&format!(
-            "control_points: expected 1 to 1,000 of 1 to 3 coordinates, found {m} of {dim}"
+            "control_points: expected 1 to {MOST_CONTROL_POINTS} of 1 to 3 coordinates, found {m} of {dim}"
         )));
     }
     let p = arrays.doubles("control_points", &[m, dim])?;

@@ -1,5 +1,6 @@
 //! How to deform: what a person sets besides the control points.
 
+use std::fmt::Display;
 use std::ops::RangeInclusive;
 
 use neuralmls_core::progress::Progress;
@@ -8,11 +9,6 @@ use neuralmls_core::{Frame, InverseDistance, Schedule, Shape, Training, Weights}
 use crate::error::Error;
 use crate::text::number;
 use crate::Transform;
-
-/// Neurons in a hidden layer.
-pub(crate) const WIDTHS: RangeInclusive<u64> = 1..=1 << 14;
-/// Steps of a training.
-pub(crate) const STEPS: RangeInclusive<u64> = 1..=1_000_000;
 
 /// The kind of weights, and its parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,9 +67,9 @@ impl WeightsSettings {
     pub fn check(&self) -> Result<(), Error> {
         match *self {
             WeightsSettings::Neural { width, steps, seed: _, rate, fourier_sigma } => {
-                check_count("width", width, WIDTHS)?;
+                check_count("width", width, Training::WIDTHS)?;
                 if let Some(steps) = steps {
-                    check_count("steps", steps, STEPS)?;
+                    check_count("steps", steps, Training::STEPS)?;
                 }
                 check_above("rate", rate)?;
                 fourier_sigma.map_or(Ok(()), |sigma| check_above("fourier_sigma", sigma))
@@ -208,15 +204,15 @@ impl Settings {
     }
 }
 
-fn check_count(name: &str, count: usize, range: RangeInclusive<u64>) -> Result<(), Error> {
-    if range.contains(&(count as u64)) {
+fn check_count(name: &str, count: usize, range: RangeInclusive<usize>) -> Result<(), Error> {
+    if range.contains(&count) {
         return Ok(());
     }
     Err(Error::argument(not_a_count(name, &range, count)))
 }
 
 /// That something is no whole number of a range.
-pub(crate) fn not_a_count(name: &str, range: &RangeInclusive<u64>, found: impl std::fmt::Display) -> String {
+pub(crate) fn not_a_count<T: Display>(name: &str, range: &RangeInclusive<T>, found: impl Display) -> String {
     format!("{name}: expected a whole number from {} to {}, found {found}", range.start(), range.end())
 }
 

@@ -22,4 +22,4 @@ mod train;
 pub use mlp::Network;
 pub use parameters::Layer;
 pub use samples::Samples;
-pub use train::{fit, train, Schedule, Trained, Training};
+pub use train::{fit, train, Schedule, Trained, Training, MOST_CONTROL_POINTS};

@@ -6,6 +6,7 @@
 //! at an output layer in closed form ([`prototypes`]), with random hidden layers, which is mostly enough.
 
 use std::f64::consts::PI;
+use std::ops::RangeInclusive;
 
 use super::features;
 use super::mlp::Network;
@@ -29,7 +30,7 @@ const MANY: usize = 64;
 /// How much faster neurons that begin at samples change than others.
 const GAIN: f32 = 4.0;
 /// Most control points: beyond, every layer of the paper's network is too small for them.
-const MOST_CONTROL_POINTS: usize = 1000;
+pub const MOST_CONTROL_POINTS: usize = 1000;
 
 /// How many steps to train.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +61,13 @@ pub struct Training {
     pub seed: u64,
     /// The deviation of random Fourier features, in cycles across half of the shape's longest side; `None` for none.
     pub fourier_sigma: Option<f64>,
+}
+
+impl Training {
+    /// Neurons that a hidden layer may have.
+    pub const WIDTHS: RangeInclusive<usize> = 1..=1 << 14;
+    /// Steps that a training may have.
+    pub const STEPS: RangeInclusive<usize> = 1..=1_000_000;
 }
 
 impl Default for Training {
@@ -122,9 +130,9 @@ pub fn fit(
     progress: &mut Progress<'_>,
 ) -> Result<Trained, Error> {
     check_control_points(p, dim)?;
-    if !(1..=1 << 14).contains(&training.width) {
-        let found = training.width;
-        return Err(Error::argument("width", format!("expected 1 to 16384 neurons, found {found}")));
+    if !Training::WIDTHS.contains(&training.width) {
+        let (most, found) = (Training::WIDTHS.end(), training.width);
+        return Err(Error::argument("width", format!("expected 1 to {most} neurons, found {found}")));
     }
     let (in_line, order) = sorted(p, dim);
     let mut lessons = Lessons::of_control_points(&in_line, dim);
@@ -209,8 +217,11 @@ fn teach(
         Schedule::UntilSmall { at_most } => at_most,
         Schedule::Fixed(steps) | Schedule::Cosine(steps) => steps,
     };
-    if !(1..=1_000_000).contains(&most) {
-        return Err(Error::argument("steps", format!("expected 1 to 1000000, found {most}")));
+    if !Training::STEPS.contains(&most) {
+        return Err(Error::argument(
+            "steps",
+            format!("expected 1 to {}, found {most}", Training::STEPS.end()),
+        ));
     }
     on_a_working_thread(progress, |progress| {
         let mut trainer = Trainer::new(network, lessons);

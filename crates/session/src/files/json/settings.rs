@@ -1,12 +1,14 @@
 //! The settings of a session file. Errors do not name the place: the caller does.
 
+use std::fmt::Display;
 use std::ops::RangeInclusive;
 
+use neuralmls_core::Training;
 use serde_json::{Map, Value};
 
 use super::style::{found, found_setting};
 use crate::error::Error;
-use crate::settings::{not_a_count, HandlesSetting, Settings, WeightsSettings, STEPS, TRANSFORMS, WIDTHS};
+use crate::settings::{not_a_count, HandlesSetting, Settings, WeightsSettings, TRANSFORMS};
 use crate::Transform;
 
 pub type Keys = Map<String, Value>;
@@ -61,10 +63,10 @@ pub fn weights(kind: &str, keys: &mut Keys) -> Result<WeightsSettings, Error> {
     match &mut weights {
         WeightsSettings::Neural { width, steps, seed, rate, fourier_sigma } => {
             if let Some(found) = take("width") {
-                *width = count("width", &found, WIDTHS)? as usize;
+                *width = count("width", &found, Training::WIDTHS)?;
             }
             if let Some(found) = take("steps") {
-                *steps = Some(count("steps", &found, STEPS)? as usize);
+                *steps = Some(count("steps", &found, Training::STEPS)?);
             }
             if let Some(found) = take("seed") {
                 *seed = count("seed", &found, 0..=u64::MAX)?;
@@ -148,7 +150,11 @@ fn number(name: &str, found: &Value, expected: &str) -> Result<f64, Error> {
     })
 }
 
-fn count(name: &str, found: &Value, range: RangeInclusive<u64>) -> Result<u64, Error> {
-    let count = found.as_u64().filter(|count| range.contains(count));
+fn count<T>(name: &str, found: &Value, range: RangeInclusive<T>) -> Result<T, Error>
+where
+    T: TryFrom<u64> + PartialOrd + Display,
+{
+    let count =
+        found.as_u64().and_then(|count| T::try_from(count).ok()).filter(|count| range.contains(count));
     count.ok_or_else(|| Error::argument(not_a_count(name, &range, found_setting(found))))
 }
