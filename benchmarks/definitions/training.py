@@ -1,4 +1,4 @@
-"""Training from scratch: 48 steps, width 1024, ten control points; the times are of one step. And what hundreds take."""
+"""Training from scratch: a step of 48, width 1024, ten control points; and the whole fit of hundreds."""
 
 from __future__ import annotations
 
