@@ -150,6 +150,8 @@ pub struct Settings {
     pub temperature: f64,
     /// How closely control points arrive.
     pub handles: HandlesSetting,
+    /// The elastic finish, 0 to 1.
+    pub relax: f64,
 }
 
 impl Default for Settings {
@@ -159,6 +161,7 @@ impl Default for Settings {
             transform: Transform::Rigid,
             temperature: 1.0,
             handles: HandlesSetting::Auto,
+            relax: 0.0,
         }
     }
 }
