@@ -225,7 +225,7 @@ class Session:
         boxes, bounds = [box_of(shape, dimension) for shape in shapes], self.frame
         if boxes and bounds is None:
             bounds = as_box(box_around(np.concatenate(boxes)), dimension)
-        shape = together(shapes, dimension) if shapes and self.weights == "shape-aware" else None
+        shape = together(shapes, dimension) if shapes else None
         return Map._of(self._core.fit(bounds, shape, progress))
 
     def _repr_html_(self) -> str:
@@ -362,7 +362,7 @@ class Map:
             They are no finite points of the map's dimension.
         """
         x = shape.positions if isinstance(shape, Shape) else shape
-        return Deformer(x, self.weights, transform=self.session.settings["transform"], progress=progress)
+        return Deformer._of_map(x, self._core, self.weights, self.session.settings["transform"], progress)
 
     def frame(
         self,
