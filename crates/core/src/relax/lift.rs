@@ -108,7 +108,7 @@ impl Lift {
 
     /// Where point i, which is at `x`, goes, and the map there.
     fn at(&self, relaxed: &Relaxed, i: usize, x: &Position) -> (Position, [[f64; 3]; 3]) {
-        let (mut y, mut map, mut all, mut held) = ([0.0; 3], [[0.0; 3]; 3], 0.0, 0.0);
+        let (mut y, mut map, mut all) = ([0.0; 3], [[0.0; 3]; 3], 0.0);
         for (node, share) in self.nodes[i].iter().zip(&self.shares[i]) {
             let (node, share) = (usize::from(*node), f64::from(*share));
             let of_node = &relaxed.maps[node];
@@ -119,16 +119,14 @@ impl Lift {
                 (0..3).for_each(|c| map[k][c] += share * of_node[k][c]);
             }
             all += share;
-            held += if node < relaxed.m { share } else { 0.0 };
         }
         y.iter_mut().for_each(|c| *c /= all);
         map.iter_mut().flatten().for_each(|e| *e /= all);
         if let Some(plate) = relaxed.plate.as_ref().filter(|_| relaxed.share > 0.0) {
             let (of_plate, map_of_plate) = plate.at(x);
-            let share = relaxed.share * (1.0 - super::knob("PATCH", 0.0) * held / all);
             for k in 0..3 {
-                y[k] += share * (of_plate[k] - y[k]);
-                (0..3).for_each(|c| map[k][c] += share * (map_of_plate[k][c] - map[k][c]));
+                y[k] += relaxed.share * (of_plate[k] - y[k]);
+                (0..3).for_each(|c| map[k][c] += relaxed.share * (map_of_plate[k][c] - map[k][c]));
             }
         }
         (y, map)

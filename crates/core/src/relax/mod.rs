@@ -89,8 +89,6 @@ pub struct Relaxed {
     x: Vec<Position>,
     y: Vec<Position>,
     maps: Vec<Matrix<3>>,
-    /// Control points.
-    m: usize,
     /// How much of the thin plate, and that.
     share: f64,
     plate: Option<Bent>,
@@ -206,7 +204,7 @@ impl Elastic {
             1.0 / (1.0 + (FORETELLS * (plate.error + ROUNDING) / (force + ROUNDING)).powi(PASSAGE))
         });
         let solve::Moved { y, maps, .. } = y_and_r;
-        Ok(Some(Relaxed { x: self.nodes.clone(), y, maps, m, share, plate }))
+        Ok(Some(Relaxed { x: self.nodes.clone(), y, maps, share, plate }))
     }
 
     /// The maps of the control points that are oriented.
@@ -305,11 +303,6 @@ fn check_body(body: &Body, p: &[f64], dim: usize) -> Result<(), Error> {
         return refused("expected every node to be linked to a control point");
     }
     Ok(())
-}
-
-/// TODO remove
-pub(crate) fn knob(name: &str, default: f64) -> f64 {
-    std::env::var(format!("KNOB_{name}")).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
 }
 
 #[cfg(test)]

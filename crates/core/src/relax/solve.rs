@@ -11,7 +11,8 @@ use super::turn::turned;
 use super::{apply, distance, Body, Position};
 use crate::mls::matrix::Matrix;
 
-/// How much nodes are rigid with control points: times the square of the nodes' spacing in that of the control points.
+/// How much nodes are rigid with control points: times the square of the nodes' spacing in that of the control points. As the other constants here
+/// from true poses of four animals and a dancer (docs/notes/relax.md).
 const KAPPA: f64 = 8.0;
 /// Of the control points' spacing: what counts as rigid.
 const SOFT: f64 = 0.03;
