@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any, Literal, TypeAlias, overload
+from typing import Any, Literal, Self, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -64,9 +64,7 @@ class Deformer:
         transform: Transform = "rigid",
         progress: Progress | None = None,
     ) -> None:
-        given = getattr(x, "dtype", np.dtype(np.float64))
-        single = given.kind == "f" and given.itemsize == 4  # whatever its byte order
-        self._dtype = np.dtype(np.float32 if single else np.float64)
+        self._dtype = _dtype_of(x)
         if not hasattr(weights, "control_points"):
             raise ArgumentError(
                 f"weights: expected a weight function, with control_points and logits, found {weights!r}"
@@ -86,6 +84,18 @@ class Deformer:
         if logits.shape != (len(points), len(p)):
             raise ArgumentError(f"logits: expected shape {(len(points), len(p))}, found {logits.shape}")
         self._core = _core.Deformer.of_logits(points, p, logits, transform)
+
+    @classmethod
+    def _of_map(
+        cls, x: ArrayLike, map: _core.Map, weights: Weights, transform: Transform, progress: Progress | None
+    ) -> Self:
+        """Points bound by a map, and to its elastic shape if it has one."""
+        self = cls.__new__(cls)
+        self._p, self._weights, self._transform, self._dtype = weights.control_points, weights, transform, _dtype_of(x)
+        points = as_points("x", x, self._p.shape[1])
+        self._count = len(points)
+        self._core = map.bind(points, x._core if isinstance(x, PointTree) else None, progress)
+        return self
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self._core.points, self._p, self._core.logits, self._transform, self._dtype.str, self._weights)
@@ -211,6 +221,12 @@ class Deformer:
         positions, maps = self._core.deform(q, orientations, t, return_maps, out, progress)
         y: Floats = positions if out is not None else positions.astype(self._dtype, copy=False)
         return (y, maps) if maps is not None else y
+
+
+def _dtype_of(x: ArrayLike) -> np.dtype[np.floating]:
+    given = getattr(x, "dtype", np.dtype(np.float64))
+    single = given.kind == "f" and given.itemsize == 4  # whatever its byte order
+    return np.dtype(np.float32 if single else np.float64)
 
 
 def _restored(

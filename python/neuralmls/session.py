@@ -48,6 +48,9 @@ class Session:
         How closely control points arrive at their targets. Auto: all the way where they own their places, as far as
         they go without a jump elsewhere. Exact: all the way, at any price. Soft: where plain moving least squares takes
         them, as in the paper. A number: that part of the way from soft to auto.
+    relax : float, 0 to 1
+        How far the elastic finish goes: 0 is moving least squares alone; 1 lets the shape's own stiffness decide what
+        the control points leave open. Above 0 the session is to be fitted to a shape.
     frame : (2, d), optional
         The box in which weights are trained; without it, that of the shapes of `fit`. With it, one session is one map
         of space, whatever it is applied to.
@@ -75,16 +78,16 @@ class Session:
         transform: Transform = "rigid",
         temperature: float = 1.0,
         handles: Handles = "auto",
+        relax: float = 0.0,
         frame: ArrayLike | None = None,
         **parameters: float | None,
     ) -> None:
         if not isinstance(points, ControlPoints):
             raise ArgumentError(f"points: expected ControlPoints, found {points!r}")
-        said = {"weights": weights, "transform": transform, "temperature": temperature, "handles": handles}
-        for name, value in said.items():
+        said = {"transform": transform, "temperature": temperature, "handles": handles, "relax": relax}
+        for name, value in {"weights": weights, **said}.items():
             if value is None:
                 raise ArgumentError(f"{name}: expected a setting, found None")
-        del said["weights"]
         changes = changes_of(weights, parameters, **said)
         self._core = _core.Session(points._core).with_settings(changes)
         self._notes: tuple[str, ...] = ()
@@ -154,7 +157,7 @@ class Session:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """Weights with their parameters, transform, temperature, handles, as the session file has them."""
+        """Weights with their parameters, transform, temperature, handles, relax, as the session file has them."""
         found: dict[str, Any] = json.loads(self._core.settings)
         return found
 
@@ -182,6 +185,7 @@ class Session:
         transform: Transform | None = None,
         temperature: float | None = None,
         handles: Handles | None = None,
+        relax: float | None = None,
         frame: ArrayLike | None = None,
         **parameters: float | None,
     ) -> Session:
@@ -193,7 +197,7 @@ class Session:
             A setting is out of its range, or belongs to other weights.
         """
         core = self._core if points is None else self._core.with_points(points._core)
-        said = {"transform": transform, "temperature": temperature, "handles": handles}
+        said = {"transform": transform, "temperature": temperature, "handles": handles, "relax": relax}
         changes = changes_of(weights, parameters, **{key: value for key, value in said.items() if value is not None})
         if changes != "{}":
             core = core.with_settings(changes)
@@ -221,7 +225,7 @@ class Session:
         boxes, bounds = [box_of(shape, dimension) for shape in shapes], self.frame
         if boxes and bounds is None:
             bounds = as_box(box_around(np.concatenate(boxes)), dimension)
-        shape = together(shapes, dimension) if shapes and self.weights == "shape-aware" else None
+        shape = together(shapes, dimension) if shapes else None
         return Map._of(self._core.fit(bounds, shape, progress))
 
     def _repr_html_(self) -> str:
@@ -358,7 +362,7 @@ class Map:
             They are no finite points of the map's dimension.
         """
         x = shape.positions if isinstance(shape, Shape) else shape
-        return Deformer(x, self.weights, transform=self.session.settings["transform"], progress=progress)
+        return Deformer._of_map(x, self._core, self.weights, self.session.settings["transform"], progress)
 
     def frame(
         self,

@@ -154,6 +154,9 @@ CLASSIC = ("--weights", "inverse-distance")
         (("--handles", "hard"), ("--handles", "auto, exact, soft or a number", "'hard'")),
         (("--handles", "1.5"), ("handles", "at most 1", "1.5")),
         (("--handles", "nan"), ("handles: expected auto, exact, soft or a number", "at most 1", "NaN")),
+        (("--relax", "-0.1"), ("relax: expected a number of at least 0 and at most 1, found -0.1",)),
+        (("--relax", "nan"), ("relax: expected a number", "at most 1", "NaN")),
+        (("--relax", "much"), ("--relax", "deform --help")),
     ],
 )
 def test_wrong_options(refused, options, words):

@@ -10,6 +10,7 @@ use crate::machine::simd::prefetch;
 use crate::machine::threads::briefly;
 use crate::mls::batch::{BatchMls, BatchPoints, Scratch, BATCH};
 use crate::mls::{check_orientations, oriented, Global, Mls, Transform};
+use crate::relax::{Elastic, Lift, Relaxed};
 use crate::softmax::{check_temperature, relative_weights, PackedWeights};
 use crate::weights::Weights;
 use std::sync::{Arc, Mutex};
@@ -38,6 +39,7 @@ pub struct Deformer {
     transform: Transform,
     /// See [`Mls::undecided`].
     undecided: f64,
+    lift: Option<Lift>,
     /// The weights of the last frame.
     last: Mutex<Option<Arc<PackedWeights>>>,
 }
@@ -120,6 +122,7 @@ impl Deformer {
             logits,
             transform,
             undecided: 0.0,
+            lift: None,
             last: Mutex::new(None),
         })
     }
@@ -127,6 +130,43 @@ impl Deformer {
     /// Lets it move points as [`Mls::undecided`] says.
     pub(crate) fn undecided(self, part: f64) -> Deformer {
         Deformer { undecided: part, ..self }
+    }
+
+    /// The same, bound to the nodes of an elastic shape too: for [`Deformer::relax`].
+    ///
+    /// # Errors
+    /// [`Error::Memory`].
+    pub fn lifted(self, elastic: &Elastic) -> Result<Deformer, Error> {
+        let lift = Lift::new(elastic, &self.x, &self.logits)?;
+        Ok(Deformer { lift: Some(lift), ..self })
+    }
+
+    /// Whether they are bound to an elastic shape.
+    pub fn is_lifted(&self) -> bool {
+        self.lift.is_some()
+    }
+
+    /// Takes the points from `y`, where [`Deformer::deform`] took them in the same pose, the part `amount` (0 to 1) of the way to where an elastic
+    /// shape takes them: `y <- y + amount (E(x) - y)`; their `maps` likewise, where there are any.
+    ///
+    /// # Errors
+    /// Where they are not [lifted](Deformer::lifted), or `y` or `maps` have another size.
+    pub fn relax(
+        &self,
+        relaxed: &Relaxed,
+        amount: f64,
+        y: &mut [f64],
+        maps: Option<&mut [f64]>,
+    ) -> Result<(), Error> {
+        let Some(lift) = &self.lift else {
+            return Err(Error::argument("relax", "the points are not bound to an elastic shape"));
+        };
+        let maps = maps.unwrap_or_default();
+        if y.len() != self.x.len() || !maps.is_empty() && maps.len() != self.x.len() * self.dim {
+            return Err(Error::argument("relax", "expected the positions and maps of these points"));
+        }
+        lift.apply(relaxed, amount, &self.x, y, maps);
+        Ok(())
     }
 
     /// Points, n.
@@ -189,7 +229,7 @@ impl Deformer {
     ) -> Result<(), Error> {
         let pose = pose.into();
         check_temperature(temperature)?;
-        let unmoved = self.check(pose)?;
+        let unmoved = self.unmoved(pose)?;
         let room = |name, found: usize, expected: usize| {
             let message = || format!("expected room for {expected} numbers, found {found}");
             if found == expected {
@@ -216,7 +256,7 @@ impl Deformer {
     }
 
     /// Checks that a pose fits; gives whether it leaves everything where it is.
-    fn check(&self, pose: Pose<'_>) -> Result<bool, Error> {
+    pub(crate) fn unmoved(&self, pose: Pose<'_>) -> Result<bool, Error> {
         let Pose { q, orientations } = pose;
         check_points("q", q, self.dim)?;
         if q.len() != self.p.len() {
@@ -229,7 +269,7 @@ impl Deformer {
 
     /// The map of its kind that fits all control points with equal weights: its rotation (row-major), scale and linear map (row-major).
     pub(crate) fn global(&self, pose: Pose<'_>) -> Result<(Vec<f64>, f64, Vec<f64>), Error> {
-        self.check(pose)?;
+        self.unmoved(pose)?;
         Ok(match self.dim {
             1 => self.global_in::<1>(pose),
             2 => self.global_in::<2>(pose),

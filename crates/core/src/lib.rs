@@ -27,6 +27,7 @@ mod geometry;
 mod machine;
 mod mls;
 mod probe;
+mod relax;
 pub mod softmax;
 mod weights;
 
@@ -38,6 +39,7 @@ pub use geometry::{placement, Frame, Order, PointTree};
 pub use machine::{memory, progress};
 pub use mls::{best_rotation, Transform, ANCHOR_WEIGHT, RIDGE};
 pub use probe::{places, Look, Probe, PLACES};
+pub use relax::{Body, Elastic, Lift, Relaxed};
 pub use weights::inverse_distance::InverseDistance;
 pub use weights::network::{train, Layer, Network, Schedule, Trained, Training, MOST_CONTROL_POINTS};
 pub use weights::shape_graph::{labels, Labels, Shape};

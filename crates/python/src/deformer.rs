@@ -1,20 +1,22 @@
 //! Points bound to their logits.
 
 use neuralmls_core::memory::copy_of;
+use neuralmls_core::progress::Progress;
 use neuralmls_core::{Pose, Transform};
+use neuralmls_session::Error as SessionError;
 use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays::table;
 use crate::errors::{argument, from_core};
-use crate::progress::run;
+use crate::progress::{run, run_session};
 use crate::weights::{PointTree, Weights};
 
 /// Deforms bound points.
 #[pyclass(frozen)]
 pub(crate) struct Deformer {
     pub inner: neuralmls_core::Deformer,
-    dim: usize,
+    pub dim: usize,
 }
 
 /// Positions n x d, and the maps n x d x d where they were asked for.
@@ -96,7 +98,9 @@ impl Deformer {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Deformed<'py>> {
         let pose = pose(&q, orientations.as_ref())?;
-        self.frame(py, pose, temperature, maps, out, progress)
+        self.frame(py, maps, out, progress, |y, maps, report| {
+            Ok(self.inner.deform_into(pose, temperature, y, maps, report)?)
+        })
     }
 }
 
@@ -118,15 +122,14 @@ impl Deformer {
         Ok(Deformer { inner: run(py, progress, bind)?, dim })
     }
 
-    /// One frame, without the GIL.
+    /// One frame, which `deform` writes into positions and maps, without the GIL.
     pub(crate) fn frame<'py>(
         &self,
         py: Python<'py>,
-        pose: Pose<'_>,
-        temperature: f64,
         maps: bool,
         out: Option<Bound<'py, PyArray2<f64>>>,
         progress: Option<Py<PyAny>>,
+        deform: impl FnOnce(&mut [f64], Option<&mut [f64]>, &mut Progress<'_>) -> Result<(), SessionError> + Send,
     ) -> PyResult<Deformed<'py>> {
         let (n, d) = (self.inner.len(), self.dim);
         // By NumPy's own function, which raises MemoryError where there is too little.
@@ -144,7 +147,7 @@ impl Deformer {
             let y = y.as_slice_mut()?;
             let mut m = maps.as_ref().map(|maps| maps.try_readwrite()).transpose()?;
             let m = m.as_mut().map(|maps| maps.as_slice_mut()).transpose()?;
-            run(py, progress, |report| self.inner.deform_into(pose, temperature, y, m, report))?;
+            run_session(py, progress, |report| deform(y, m, report))?;
         }
         Ok((positions, maps))
     }

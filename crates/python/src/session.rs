@@ -1,8 +1,10 @@
 //! Sessions, and what comes of them: the objects of `crates/session`, as Python has them.
 
+use neuralmls_core::memory::copy_of;
+use neuralmls_core::progress::Progress;
 use neuralmls_core::Pose;
 use neuralmls_session::{Advice, Error, Held};
-use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -13,7 +15,7 @@ use crate::handles::Handles;
 use crate::progress::run_session;
 use crate::report::Report;
 use crate::shape_file::ShapeFile;
-use crate::weights::Weights;
+use crate::weights::{PointTree, Weights};
 
 /// What reading a file gave.
 #[pyclass(frozen)]
@@ -203,9 +205,22 @@ impl Map {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Deformed<'py>> {
         let aim = py.detach(|| self.0.aim()).map_err(raised)?;
-        let orientations = self.0.session().points.orientations();
-        let pose = Pose { q: &aim.targets, orientations: orientations.as_deref() };
-        bound.frame(py, pose, self.0.session().settings.temperature, maps, out, progress)
+        bound.frame(py, maps, out, progress, |y, maps, report| {
+            self.0.deform_into(&bound.inner, &aim, y, maps, report)
+        })
+    }
+
+    /// Binds points by its weights, and to its elastic shape if it has one; with a tree of the points, where there is one.
+    fn bind(
+        &self,
+        py: Python<'_>,
+        x: PyReadonlyArray2<'_, f64>,
+        tree: Option<&PointTree>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Deformer> {
+        let (dim, x, tree) = (x.shape()[1], x.as_slice()?, tree.map(|tree| &tree.0));
+        let bound = |report: &mut Progress<'_>| self.0.bind(copy_of(x)?, tree, report);
+        Ok(Deformer { inner: run_session(py, progress, bound)?, dim })
     }
 
     /// What happens to the control points, in the file of a shape where one is given.

@@ -108,16 +108,19 @@ mod tests {
 
     #[test]
     fn what_is_said_goes_before_what_is_there() {
-        let settings = with(r#"{"temperature": 2, "handles": 0.5, "weights": {"width": 64}}"#).unwrap();
-        assert_eq!(settings.temperature, 2.0);
+        let settings =
+            with(r#"{"temperature": 2, "handles": 0.5, "relax": 0.25, "weights": {"width": 64}}"#).unwrap();
+        assert_eq!((settings.temperature, settings.relax), (2.0, 0.25));
         let WeightsSettings::Neural { width, seed, .. } = settings.weights else {
             panic!("neural by default")
         };
         assert_eq!((width, seed), (64, 0));
-        let changes = serde_json::from_str(r#"{"weights": {"seed": 3}, "handles": null}"#).unwrap();
+        let changes =
+            serde_json::from_str(r#"{"weights": {"seed": 3}, "handles": null, "relax": null}"#).unwrap();
         let further = settings.with(&changes).unwrap();
         let WeightsSettings::Neural { width, seed, .. } = further.weights else { panic!("still neural") };
         assert_eq!((width, seed, further.handles), (64, 3, crate::HandlesSetting::Auto));
+        assert_eq!(further.relax, 0.0);
     }
 
     #[test]
@@ -149,5 +152,8 @@ mod tests {
             "alpha belongs to inverse-distance weights, but the weights are neural"
         );
         assert_eq!(says(r#"{"temperature": -1}"#), "temperature: expected a number above 0, found -1");
+        let expected = "relax: expected a number of at least 0 and at most 1, found";
+        assert_eq!(says(r#"{"relax": 1.5}"#), format!("{expected} 1.5"));
+        assert_eq!(says(r#"{"relax": "much"}"#), format!("{expected} 'much'"));
     }
 }

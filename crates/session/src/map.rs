@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use neuralmls_core::{
-    progress::Progress, Aim, Deformed, Deformer, Frame, Handles, PointTree, Pose, Shape, Trained, Transform,
-    Weights,
+    progress::Progress, Aim, Deformed, Deformer, Elastic, Frame, Handles, PointTree, Pose, Relaxed, Shape,
+    Trained, Transform, Weights,
 };
 
 use crate::{Bounds, Error, HandlesSetting, Session};
@@ -27,14 +27,17 @@ pub struct Map {
     session: Session,
     weights: Arc<Weights>,
     handles: Arc<Handles>,
+    /// Of a map that was fitted with `relax`.
+    elastic: Option<Arc<Elastic>>,
 }
 
 impl Session {
     /// Fits the weights to the control points: in the session's own frame, else in `bounds`, the box around the shapes, else in the box of
-    /// the control points. `shape` is what shape-aware weights learn from: all points and faces of the shapes.
+    /// the control points. `shape` is what shape-aware weights learn from, and what `relax` takes stiffness from: all points and faces of the
+    /// shapes.
     ///
     /// # Errors
-    /// Where a setting is out of its range, a box has no size; for shape-aware weights without a shape.
+    /// Where a setting is out of its range, a box has no size; for shape-aware weights or `relax` without a shape; for `relax` in 1D.
     pub fn fit(
         &self,
         bounds: Option<&Bounds>,
@@ -49,7 +52,15 @@ impl Session {
             Some(bounds) => bounds.frame(dim)?,
             None => Frame::around(&p, dim),
         };
-        Map::of(session, self.settings.weights.fit(&p, dim, frame, shape, progress)?)
+        let weights = self.settings.weights.fit(&p, dim, frame, shape, progress)?;
+        if self.settings.relax == 0.0 {
+            return Map::of(session, weights);
+        }
+        let shape = shape.ok_or_else(|| {
+            Error::argument("shapes: relax needs at least one shape, whose stiffness decides")
+        })?;
+        let elastic = Elastic::new(&weights, shape)?;
+        Map::elastic(session, weights, Some(elastic))
     }
 }
 
@@ -92,6 +103,19 @@ impl Map {
     /// # Errors
     /// Where they are of another kind, or belong to other control points.
     pub fn over(session: Session, weights: Arc<Weights>) -> Result<Map, Error> {
+        Map::made(session, weights, None)
+    }
+
+    /// The same, of an elastic shape too.
+    pub(crate) fn elastic(
+        session: Session,
+        weights: Weights,
+        elastic: Option<Elastic>,
+    ) -> Result<Map, Error> {
+        Map::made(session, Arc::new(weights), elastic.map(Arc::new))
+    }
+
+    fn made(session: Session, weights: Arc<Weights>, elastic: Option<Arc<Elastic>>) -> Result<Map, Error> {
         session.settings.check()?;
         let (expected, found) = (session.settings.weights.kind(), weights.kind());
         if found != expected {
@@ -102,14 +126,20 @@ impl Map {
         if weights.control_points() != session.points.sources() {
             return Err(Error::argument("the weights were fitted to other control points at rest"));
         }
+        if session.settings.relax > 0.0 && elastic.is_none() {
+            return Err(Error::argument(
+                "relax: the map was fitted without, and knows no shape; fit it with relax above 0",
+            ));
+        }
         let handles = Arc::new(Handles::new(&weights, session.settings.transform)?);
-        Ok(Map { session, weights, handles })
+        Ok(Map { session, weights, handles, elastic })
     }
 
-    /// The same weights with other targets, transform, temperature or handles.
+    /// The same weights with other targets, transform, temperature, handles or `relax`.
     ///
     /// # Errors
-    /// Where the control points at rest or the settings of the weights are others: these need a fit.
+    /// Where the control points at rest or the settings of the weights are others, or `relax` is above 0 and was not at the fit: these need a
+    /// fit.
     pub fn with(&self, session: Session) -> Result<Map, Error> {
         if session.settings.weights != self.session.settings.weights {
             return Err(Error::argument("weights: the map was fitted with other weights"));
@@ -117,11 +147,12 @@ impl Map {
         let session = Session { frame: self.session.frame.clone(), ..session };
         if session.points.sources() == self.weights.control_points()
             && session.settings.transform == self.session.settings.transform
+            && (session.settings.relax == 0.0 || self.elastic.is_some())
         {
             session.settings.check()?;
             return Ok(Map { session, ..self.clone() });
         }
-        Map::over(session, self.weights.clone())
+        Map::made(session, self.weights.clone(), self.elastic.clone())
     }
 
     /// The control points, the settings, and the frame in which the weights were trained.
@@ -145,6 +176,23 @@ impl Map {
     /// The weights, shared.
     pub fn shared_weights(&self) -> Arc<Weights> {
         self.weights.clone()
+    }
+
+    /// What it knows of the shape's stiffness, where it was fitted with `relax`.
+    pub fn shared_elastic(&self) -> Option<Arc<Elastic>> {
+        self.elastic.clone()
+    }
+
+    /// Where the nodes of the elastic shape go with what [`Map::aim`] found; `None` without `relax`, or where nothing moves.
+    ///
+    /// # Errors
+    /// As [`Map::aim`].
+    pub fn relaxed(&self, aim: &Aim) -> Result<Option<Relaxed>, Error> {
+        let settings = &self.session.settings;
+        let Some(elastic) = self.elastic.as_ref().filter(|_| settings.relax > 0.0) else { return Ok(None) };
+        let orientations = self.session.points.orientations();
+        let pose = Pose { q: &aim.targets, orientations: orientations.as_deref() };
+        Ok(elastic.relax(pose, settings.temperature, settings.transform)?)
     }
 
     /// The control points as points that are moved themselves.
@@ -181,13 +229,17 @@ impl Map {
         tree: Option<&PointTree>,
         progress: &mut Progress<'_>,
     ) -> Result<Deformer, Error> {
-        Ok(Deformer::new(x, &self.weights, tree, self.transform(), progress)?)
+        let bound = Deformer::new(x, &self.weights, tree, self.transform(), progress)?;
+        match &self.elastic {
+            Some(elastic) => Ok(bound.lifted(elastic)?),
+            None => Ok(bound),
+        }
     }
 
     /// Where bound points go with what [`Map::aim`] found; with the local maps if `maps`.
     ///
     /// # Errors
-    /// As [`Deformer::deform`].
+    /// As [`Deformer::deform`]; with `relax`, where the points were bound by a map that was fitted without.
     pub fn deform(
         &self,
         bound: &Deformer,
@@ -195,9 +247,31 @@ impl Map {
         maps: bool,
         progress: &mut Progress<'_>,
     ) -> Result<Deformed, Error> {
-        let orientations = self.session.points.orientations();
+        let mut y = vec![0.0; bound.points().len()];
+        let mut matrices = maps.then(|| vec![0.0; bound.points().len() * self.session.points.dim()]);
+        self.deform_into(bound, aim, &mut y, matrices.as_deref_mut(), progress)?;
+        Ok(Deformed { positions: y, maps: matrices })
+    }
+
+    /// [`Map::deform`] into memory that the caller has: `y` (n x dim), and `maps` (n x dim x dim) where they are wanted.
+    ///
+    /// # Errors
+    /// As [`Map::deform`], and where `y` or `maps` have another size. What they hold then is not a result.
+    pub fn deform_into(
+        &self,
+        bound: &Deformer,
+        aim: &Aim,
+        y: &mut [f64],
+        mut maps: Option<&mut [f64]>,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), Error> {
+        let (settings, orientations) = (&self.session.settings, self.session.points.orientations());
         let pose = Pose { q: &aim.targets, orientations: orientations.as_deref() };
-        Ok(bound.deform(pose, self.session.settings.temperature, maps, progress)?)
+        bound.deform_into(pose, settings.temperature, y, maps.as_deref_mut(), progress)?;
+        if let Some(relaxed) = self.relaxed(aim)? {
+            bound.relax(&relaxed, settings.relax, y, maps)?;
+        }
+        Ok(())
     }
 
     /// Where the points `x` (n x dim) go.

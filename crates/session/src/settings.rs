@@ -150,6 +150,8 @@ pub struct Settings {
     pub temperature: f64,
     /// How closely control points arrive.
     pub handles: HandlesSetting,
+    /// How far the elastic finish goes, 0 (none) to 1 (all of it).
+    pub relax: f64,
 }
 
 impl Default for Settings {
@@ -159,6 +161,7 @@ impl Default for Settings {
             transform: Transform::Rigid,
             temperature: 1.0,
             handles: HandlesSetting::Auto,
+            relax: 0.0,
         }
     }
 }
@@ -195,12 +198,10 @@ impl Settings {
     pub fn check(&self) -> Result<(), Error> {
         self.weights.check()?;
         check_above("temperature", self.temperature)?;
-        match self.handles {
-            HandlesSetting::Part(share) => {
-                check_number("handles", share, (0.0..=1.0).contains(&share), "of at least 0 and at most 1")
-            }
-            _ => Ok(()),
+        if let HandlesSetting::Part(share) = self.handles {
+            check_share("handles", share)?;
         }
+        check_share("relax", self.relax)
     }
 }
 
@@ -218,6 +219,10 @@ pub(crate) fn not_a_count<T: Display>(name: &str, range: &RangeInclusive<T>, fou
 
 fn check_above(name: &str, value: f64) -> Result<(), Error> {
     check_number(name, value, value > 0.0, "above 0")
+}
+
+fn check_share(name: &str, value: f64) -> Result<(), Error> {
+    check_number(name, value, (0.0..=1.0).contains(&value), "of at least 0 and at most 1")
 }
 
 fn check_number(name: &str, value: f64, ok: bool, expected: &str) -> Result<(), Error> {
@@ -250,6 +255,10 @@ mod tests {
         assert_eq!(says(cold), "temperature: expected a number above 0, found -1");
         let far = Settings { handles: HandlesSetting::Part(1.5), ..some() };
         assert_eq!(says(far), "handles: expected a number of at least 0 and at most 1, found 1.5");
+        let limp = Settings { relax: -0.5, ..some() };
+        assert_eq!(says(limp), "relax: expected a number of at least 0 and at most 1, found -0.5");
+        let unsaid = Settings { relax: f64::NAN, ..some() };
+        assert_eq!(says(unsaid), "relax: expected a number of at least 0 and at most 1, found nan");
         let weights = WeightsSettings::InverseDistance { alpha: f64::INFINITY, epsilon: 0.0 };
         assert_eq!(says(Settings { weights, ..some() }), "alpha: expected a number above 0, found inf");
         let weights =

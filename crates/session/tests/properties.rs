@@ -110,12 +110,15 @@ fn settings() -> impl Strategy<Value = Settings> {
         prop::sample::select(vec![HandlesSetting::Auto, HandlesSetting::Exact, HandlesSetting::Soft]),
         (0.0..=1.0f64).prop_map(HandlesSetting::Part),
     ];
-    (weights, transform, above_0(), handles).prop_map(|(weights, transform, temperature, handles)| Settings {
-        weights,
-        transform,
-        temperature,
-        handles,
-    })
+    (weights, transform, above_0(), handles, 0.0..=1.0f64).prop_map(
+        |(weights, transform, temperature, handles, relax)| Settings {
+            weights,
+            transform,
+            temperature,
+            handles,
+            relax,
+        },
+    )
 }
 
 fn sessions() -> impl Strategy<Value = Session> {

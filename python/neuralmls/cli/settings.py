@@ -64,6 +64,12 @@ MOTION = (
         help="How closely control points arrive: all the way where they own their places and arrive (auto), at any "
         "price (exact), near their targets as in the paper (soft), or that part of the way.  [default: auto]",
     ),
+    click.option(
+        "--relax",
+        type=float,
+        help="How far the elastic finish goes, 0 (none) to 1: the shape's own stiffness decides what control points "
+        "leave open.  [default: 0]",
+    ),
 )
 
 

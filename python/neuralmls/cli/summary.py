@@ -54,6 +54,7 @@ def summary(
         "transform": session.settings["transform"],
         "temperature": session.settings["temperature"],
         "handles": session.settings["handles"],
+        "relax": session.settings["relax"],
         "arrival": report.handles,
         "soft": report.soft,
         "control_points": told,
@@ -85,7 +86,7 @@ def show(told: dict[str, Any], *, everything: bool, file: TextIO) -> None:
                 f"{len(points):,}, {count:,} of them moved" + (f", {oriented:,} turned" if oriented else ""),
             ),
             ("weights", _weights(weights)),
-            ("transform", f"{told['transform']}, temperature {told['temperature']:g}"),
+            ("transform", f"{told['transform']}, temperature {told['temperature']:g}" + _relax(told["relax"])),
             *_handles(told),
             ("seconds", ", ".join(f"{name} {value:.2f}" for name, value in told["seconds"].items())),
             ("", f"{sum(told['seconds'].values()):.2f} in all"),
@@ -130,6 +131,10 @@ def _handles(told: dict[str, Any]) -> list[tuple[str, str]]:
     if told["session"] is not None:
         lines.append(f"settings of {told['session']}")
     return list(zip(["handles", *[""] * len(lines)], lines, strict=False))
+
+
+def _relax(relax: float) -> str:
+    return f", relax {relax:g}" if relax else ""
 
 
 def _weights(weights: dict[str, Any]) -> str:

@@ -9,7 +9,7 @@ mod affine;
 pub(crate) mod batch;
 
 mod global;
-mod matrix;
+pub(crate) mod matrix;
 mod moments;
 mod oriented;
 mod rotation;

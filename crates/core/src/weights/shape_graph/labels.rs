@@ -97,14 +97,7 @@ pub fn labels(
     if check_points("control points", p, dim)? == 0 {
         return Err(Error::argument("control points", "expected at least one, found none"));
     }
-    let n = check_points("x", shape.x, dim)?;
-    if n == 0 {
-        return Err(Error::argument("x", "expected at least one point, found none"));
-    }
-    if let Some(face) = shape.faces.iter().find(|face| face.iter().any(|&corner| corner as usize >= n)) {
-        let found = face.map(|corner| corner.to_string()).join(", ");
-        return Err(Error::argument("faces", format!("expected vertices 0 to {}, found ({found})", n - 1)));
-    }
+    check_shape(shape, dim)?;
     report(progress, 0.0)?;
     let entered = |x: &[f64]| -> Vec<Position> { x.chunks_exact(dim).map(|x| inside(&frame, x)).collect() };
     let (p, x) = (entered(p), entered(shape.x));
@@ -132,6 +125,19 @@ pub fn labels(
     }
     report(progress, 1.0)?;
     Ok(Labels { x: places, logits })
+}
+
+/// Refuses what is no shape.
+pub(crate) fn check_shape(shape: Shape<'_>, dim: usize) -> Result<(), Error> {
+    let n = check_points("x", shape.x, dim)?;
+    if n == 0 {
+        return Err(Error::argument("x", "expected at least one point, found none"));
+    }
+    if let Some(face) = shape.faces.iter().find(|face| face.iter().any(|&corner| corner as usize >= n)) {
+        let found = face.map(|corner| corner.to_string()).join(", ");
+        return Err(Error::argument("faces", format!("expected vertices 0 to {}, found ({found})", n - 1)));
+    }
+    Ok(())
 }
 
 fn inside(frame: &Frame, x: &[f64]) -> Position {

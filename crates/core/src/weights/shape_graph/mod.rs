@@ -13,6 +13,7 @@
 //! articulation", 2007, there in a cage. The settings were chosen by studies/shape_aware.py; docs/notes/shape-aware.md has the figures.
 
 mod cholesky;
+mod coarse;
 mod graph;
 mod labels;
 mod links;
@@ -21,12 +22,13 @@ mod near;
 mod paths;
 mod walks;
 
-pub(crate) use labels::fit;
+pub(crate) use coarse::coarse;
+pub(crate) use labels::{check_shape, fit};
 pub use labels::{labels, Labels, Shape};
 
-use near::Near;
+pub(crate) use near::Near;
 
-type Position = [f64; 3];
+pub(crate) type Position = [f64; 3];
 
 /// Side of a cell, in halves of the shape's longest side.
 const CELL: f64 = 0.02;

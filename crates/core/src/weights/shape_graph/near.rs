@@ -7,7 +7,7 @@ use super::{squared, Position};
 const LEAF: usize = 8;
 
 /// The tree: the median of a range of `order` is its node, in the middle of it.
-pub(super) struct Near {
+pub(crate) struct Near {
     order: Vec<u32>,
     positions: Vec<Position>,
     /// The side across which the range around each place is split.
@@ -15,10 +15,10 @@ pub(super) struct Near {
 }
 
 /// A square of a distance, and whose it is.
-pub(super) type Found = (f64, u32);
+pub(crate) type Found = (f64, u32);
 
 impl Near {
-    pub(super) fn new(positions: &[Position]) -> Near {
+    pub(crate) fn new(positions: &[Position]) -> Near {
         let mut order: Vec<u32> = (0..positions.len() as u32).collect();
         let mut axes = vec![0; positions.len()];
         split(positions, &mut order, &mut axes);
@@ -27,7 +27,7 @@ impl Near {
     }
 
     /// The at most `count` nearest to `x` whose square of the distance is below `bound` and that are `wanted`, into `found`.
-    pub(super) fn nearest(
+    pub(crate) fn nearest(
         &self,
         x: &Position,
         count: usize,

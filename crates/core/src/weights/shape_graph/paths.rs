@@ -9,11 +9,11 @@ use super::{attached, squared, Position};
 
 /// So many times as far from a control point as the nearest: the nodes to which paths lead from it, for one in a body is not on one
 /// side of it only.
-const AROUND: f64 = 2.0;
+pub(super) const AROUND: f64 = 2.0;
 /// Such nodes.
-const MOST_AROUND: usize = 512;
+pub(super) const MOST_AROUND: usize = 512;
 /// Two nodes in one place are so far from each other.
-const LEAST: f64 = 1e-12;
+pub(super) const LEAST: f64 = 1e-12;
 
 /// Shortest paths along a shape.
 pub(super) struct Reach {
@@ -77,13 +77,13 @@ pub(super) fn reach(links: &Links, near: &Near, p: &[Position]) -> Reach {
 }
 
 /// The neighbours of each node.
-struct Neighbours {
+pub(super) struct Neighbours {
     starts: Vec<u32>,
     others: Vec<u32>,
 }
 
 impl Neighbours {
-    fn new(links: &Links) -> Neighbours {
+    pub(super) fn new(links: &Links) -> Neighbours {
         let mut starts = vec![0_u32; links.nodes.len() + 1];
         links.ends.iter().flatten().for_each(|&end| starts[end as usize + 1] += 1);
         (1..starts.len()).for_each(|node| starts[node] += starts[node - 1]);
@@ -102,7 +102,7 @@ impl Neighbours {
     }
 
     /// Each node within two links, once, and how far it is.
-    fn two_steps(&self, links: &Links, node: u32, steps: &mut Vec<(u32, f64)>) {
+    pub(super) fn two_steps(&self, links: &Links, node: u32, steps: &mut Vec<(u32, f64)>) {
         steps.clear();
         let x = &links.nodes[node as usize];
         for &one in self.of(node) {
@@ -120,7 +120,7 @@ impl Neighbours {
 
 /// A finite distance, as a queue orders it.
 #[derive(Clone, Copy, PartialEq)]
-struct Ordered(f64);
+pub(super) struct Ordered(pub(super) f64);
 
 impl Eq for Ordered {}
 

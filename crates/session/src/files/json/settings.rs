@@ -38,6 +38,9 @@ pub fn read_settings(mut keys: Keys) -> Result<(Settings, Keys), Error> {
     if let Some(found) = keys.shift_remove("handles") {
         settings.handles = handles(&found)?;
     }
+    if let Some(found) = keys.shift_remove("relax") {
+        settings.relax = share("relax", &found, "expected a number")?;
+    }
     settings.check()?;
     rest.extend(keys);
     Ok((settings, rest))

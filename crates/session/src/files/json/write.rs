@@ -103,6 +103,7 @@ pub(crate) fn settings_value(settings: &Settings) -> Value {
         "transform": transform.map_or("rigid", |(name, _)| name),
         "temperature": number(settings.temperature),
         "handles": handles,
+        "relax": number(settings.relax),
     })
 }
 

@@ -1,0 +1,297 @@
+//! The elastic finish: what control points leave open is decided by the shape's own stiffness.
+//!
+//! ```text
+//! fit    some 500 nodes spread along the shape, the control points first; neighbours are linked, stiffly where the shape is wide
+//! frame  nodes go where links keep their lengths and turn with the shape, and where each node is rigid with the control points of which
+//!        it has most: both in the L1 sense, so that bending gathers at joints, and a node chooses whom it follows (solve)
+//!        if the motion is no rigid one of parts, a thin plate takes over (plate)
+//! points each by its nearest nodes, along the shape rather than through the air (lift)
+//! ```
+//!
+//! The control points are nodes that go where the map takes them without it: it changes nothing at them. All of it is a continuous function
+//! of space and of the pose, always from the same start.
+//!
+//! Sources: Sorkine, Alexa, "As-rigid-as-possible surface modeling", 2007; Sumner, Schmid, Pauly, "Embedded deformation for shape
+//! manipulation", 2007; graduated non-convexity: Blake, Zisserman, "Visual reconstruction", 1987.
+
+use crate::deformer::{Deformer, Pose};
+use crate::error::Error;
+use crate::geometry::Frame;
+use crate::mls::matrix::Matrix;
+use crate::mls::{best_rotation, Transform};
+use crate::softmax;
+use crate::weights::shape_graph::{check_shape, coarse, Near, Position, Shape};
+use crate::weights::Weights;
+
+mod lift;
+mod plate;
+mod solve;
+mod start;
+mod system;
+mod turn;
+
+pub use lift::Lift;
+use plate::{Bent, Plate};
+use solve::Rest;
+use system::System;
+
+/// Nodes of a shape, where control points are few.
+const NODES: usize = 500;
+/// Nodes a control point, where they are many.
+const NODES_EACH: usize = 3;
+/// Of the spacing of the nodes: over which distance links lose their stiffness.
+const REACH: f64 = 1.2;
+/// The least stiffness of a link.
+const LEAST_STIFFNESS: f64 = 1e-4;
+/// The least area of a node, in parts of the mean: one in a body has none of the surface.
+const LEAST_AREA: f64 = 0.1;
+/// Steepness of the passage to the thin plate, and where it is: how much better it must foretell.
+const PASSAGE: i32 = 6;
+const FORETELLS: f64 = 0.45;
+/// An error of foretelling that is rounding, in halves of the frame's longest side.
+const ROUNDING: f64 = 1e-9;
+
+/// What the finish knows of a shape. All but the arrays of [`Body`] follows from them and the weights.
+pub struct Elastic {
+    dim: usize,
+    frame: Frame,
+    body: Body,
+    nodes: Vec<Position>,
+    /// The control points at rest and the nodes in the world, and the logits of these.
+    p: Vec<f64>,
+    world: Vec<f64>,
+    logits: Vec<f32>,
+    rest: Rest,
+    system: System,
+    plate: Option<Plate>,
+    near: Near,
+    /// Square roots of the weights of the nodes at the temperature 1, node by node.
+    roots: Vec<f32>,
+}
+
+/// Nodes of a shape and the links between them, as they are kept in a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Body {
+    /// Nodes, k x dim, in halves of the frame's longest side; the control points first.
+    pub nodes: Vec<f64>,
+    /// Each pair of linked nodes once, the smaller first.
+    pub links: Vec<[u32; 2]>,
+    /// How stiff each link is, above 0.
+    pub stiffness: Vec<f64>,
+    /// How much of the shape each node stands for, above 0; 1 in the mean.
+    pub areas: Vec<f64>,
+}
+
+/// A pose, relaxed: where each node goes.
+#[derive(Clone, Debug)]
+pub struct Relaxed {
+    /// Of each node its place, and the map of what is near it: a rotation, with a scale where a control point says so.
+    x: Vec<Position>,
+    y: Vec<Position>,
+    maps: Vec<Matrix<3>>,
+    /// How much of the thin plate, and that.
+    share: f64,
+    plate: Option<Bent>,
+}
+
+impl Elastic {
+    /// Of a shape and the `weights` of its control points.
+    ///
+    /// # Errors
+    /// Where the shape has no finite points, or a face names none; in 1D.
+    pub fn new(weights: &Weights, shape: Shape<'_>) -> Result<Elastic, Error> {
+        let (dim, frame) = (weights.dim(), weights.frame());
+        check_shape(shape, dim)?;
+        let entered = |x: &[f64]| -> Vec<Position> {
+            x.chunks_exact(dim).map(|x| position(&frame.enter_all(x, dim))).collect()
+        };
+        let p = entered(weights.control_points());
+        let count = NODES.max(NODES_EACH * p.len());
+        let coarse = coarse(&entered(shape.x), shape.faces, &p, count);
+        let spacing = spacing(coarse.nodes.len(), &coarse.ends, &coarse.lengths);
+        let mean = coarse.areas.iter().sum::<f64>() / coarse.nodes.len() as f64;
+        let areas: Vec<f64> = coarse.areas.iter().map(|area| (area / mean).max(LEAST_AREA)).collect();
+        let stiff = |([a, b], length): (&[u32; 2], &f64)| {
+            let area = mean * (areas[*a as usize] * areas[*b as usize]).sqrt();
+            ((-(length / (REACH * spacing)).powi(2)).exp() * area / (spacing * spacing)).max(LEAST_STIFFNESS)
+        };
+        let stiffness = coarse.ends.iter().zip(&coarse.lengths).map(stiff).collect();
+        let nodes = coarse.nodes.iter().flat_map(|x| x[..dim].to_vec()).collect();
+        Elastic::of(weights, Body { nodes, links: coarse.ends, stiffness, areas })
+    }
+
+    /// Of what [`Elastic::body`] gave, and the same weights.
+    ///
+    /// # Errors
+    /// Where an array does not fit another, or the weights.
+    pub fn of(weights: &Weights, body: Body) -> Result<Elastic, Error> {
+        let (dim, frame, p) = (weights.dim(), weights.frame(), weights.control_points());
+        if dim == 1 {
+            return Err(Error::argument(
+                "relax",
+                "a line has no stiffness: expected points of 2 or 3 coordinates",
+            ));
+        }
+        let m = p.len() / dim;
+        check_body(&body, &frame.enter_all(p, dim), dim)?;
+        let nodes: Vec<Position> = body.nodes.chunks_exact(dim).map(position).collect();
+        let mut world = p.to_vec();
+        let rest_of = &body.nodes[p.len()..];
+        world.extend(rest_of.iter().enumerate().map(|(at, c)| c * frame.half + frame.centre[at % dim]));
+        // By themselves, as `Handles` has them.
+        let mut logits = weights.logits(p, &mut |_| true)?;
+        logits.extend(weights.logits(&world[p.len()..], &mut |_| true)?);
+        Ok(Elastic {
+            dim,
+            frame,
+            p: p.to_vec(),
+            world,
+            rest: Rest::new(&nodes, m, &body),
+            system: System::new(m, nodes.len(), &body.links),
+            plate: Plate::new(&nodes[..m], dim),
+            near: Near::new(&nodes),
+            roots: lift::roots(&logits, m),
+            nodes,
+            logits,
+            body,
+        })
+    }
+
+    /// Its nodes and links.
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    /// Where the nodes go in a pose, whose targets are those of an [`crate::Aim`]; `None` where nothing moves.
+    ///
+    /// # Errors
+    /// As [`Deformer::deform`].
+    pub fn relax<'a>(
+        &self,
+        pose: impl Into<Pose<'a>>,
+        temperature: f64,
+        transform: Transform,
+    ) -> Result<Option<Relaxed>, Error> {
+        let pose = pose.into();
+        let nodes =
+            Deformer::of_logits(self.world.clone(), self.dim, &self.p, self.logits.clone(), transform)?;
+        if nodes.unmoved(pose)? {
+            return Ok(None);
+        }
+        let moved = nodes.deform(pose, temperature, true, &mut |_| true)?;
+        let m = self.p.len() / self.dim;
+        let landed: Vec<Position> = moved.positions[..self.p.len()]
+            .chunks_exact(self.dim)
+            .map(|y| position(&self.frame.enter_all(y, self.dim)))
+            .collect();
+        let maps = moved.maps.expect("asked for");
+        let rotations = maps.chunks_exact(self.dim * self.dim).map(|map| match transform {
+            Transform::Rigid => embedded(map, self.dim),
+            _ => nearest_rotation(map, self.dim),
+        });
+        let mut w = vec![0.0; self.nodes.len() * m];
+        for (w, logits) in w.chunks_exact_mut(m).zip(self.logits.chunks_exact(m)) {
+            softmax::weights(logits, temperature, w);
+        }
+        let held = self.held(pose, transform);
+        let frame = solve::Posed { w: &w, q: &landed, held: &held };
+        let mut y_and_r = start::start(&self.rest, &self.body, &frame, rotations.collect());
+        let force = solve::solve(&self.rest, &self.body, &self.system, &frame, &mut y_and_r);
+        let (global, _, _) = nodes.global(pose)?;
+        let plate = self.plate.as_ref().map(|plate| plate.bent(&landed, &embedded(&global, self.dim)));
+        let share = plate.as_ref().map_or(0.0, |plate| {
+            1.0 / (1.0 + (FORETELLS * (plate.error + ROUNDING) / (force + ROUNDING)).powi(PASSAGE))
+        });
+        let solve::Moved { y, maps, .. } = y_and_r;
+        Ok(Some(Relaxed { x: self.nodes.clone(), y, maps, share, plate }))
+    }
+
+    /// The maps of the control points that are oriented.
+    fn held(&self, pose: Pose<'_>, transform: Transform) -> Vec<Option<Matrix<3>>> {
+        let m = self.p.len() / self.dim;
+        let Some(orientations) = pose.orientations else { return vec![None; m] };
+        let held = |map: &[f64]| match (map[0].is_nan(), transform) {
+            (true, _) => None,
+            (_, Transform::Rigid) => Some(nearest_rotation(map, self.dim)),
+            _ => Some(embedded(map, self.dim)),
+        };
+        orientations.chunks_exact(self.dim * self.dim).map(held).collect()
+    }
+}
+
+fn position(x: &[f64]) -> Position {
+    std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0))
+}
+
+/// A map (row-major) in three dimensions, with what it lacks as it is.
+fn embedded(map: &[f64], dim: usize) -> Matrix<3> {
+    std::array::from_fn(|r| {
+        std::array::from_fn(
+            |c| {
+                if r < dim && c < dim {
+                    map[dim * r + c]
+                } else {
+                    f64::from(u8::from(r == c))
+                }
+            },
+        )
+    })
+}
+
+fn nearest_rotation(map: &[f64], dim: usize) -> Matrix<3> {
+    if dim == 2 {
+        let rotation = best_rotation::<2>(&[[map[0], map[2]], [map[1], map[3]]]);
+        return embedded(rotation.as_flattened(), 2);
+    }
+    best_rotation::<3>(&std::array::from_fn(|r| std::array::from_fn(|c| map[3 * c + r])))
+}
+
+fn apply(m: &Matrix<3>, x: &Position) -> Position {
+    std::array::from_fn(|k| m[k][0] * x[0] + m[k][1] * x[1] + m[k][2] * x[2])
+}
+
+fn distance(a: &Position, b: &Position) -> f64 {
+    ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) + (a[2] - b[2]).powi(2)).sqrt()
+}
+
+/// The median distance of a node to its nearest neighbour.
+fn spacing(count: usize, links: &[[u32; 2]], lengths: &[f64]) -> f64 {
+    let mut nearest = vec![f64::INFINITY; count];
+    for (ends, length) in links.iter().zip(lengths) {
+        ends.iter().for_each(|&end| nearest[end as usize] = length.min(nearest[end as usize]));
+    }
+    median(nearest)
+}
+
+/// The middle one of the finite numbers, the lower of two; 1 of none.
+fn median(mut of: Vec<f64>) -> f64 {
+    of.retain(|value| value.is_finite());
+    of.sort_by(f64::total_cmp);
+    of.get(of.len().saturating_sub(1) / 2).copied().unwrap_or(1.0)
+}
+
+fn check_body(body: &Body, p: &[f64], dim: usize) -> Result<(), Error> {
+    let refused = |message: &str| Err(Error::argument("relax", message.to_string()));
+    let count = body.nodes.len() / dim;
+    if !body.nodes.len().is_multiple_of(dim) || !body.nodes.starts_with(p) {
+        return refused("expected nodes of which the control points are the first");
+    }
+    if body.nodes.iter().any(|c| !c.is_finite()) {
+        return refused("expected finite nodes");
+    }
+    if body.areas.len() != count || body.stiffness.len() != body.links.len() {
+        return refused("expected an area for each node, and a stiffness for each link");
+    }
+    if body.areas.iter().chain(&body.stiffness).any(|value| !(*value > 0.0 && value.is_finite())) {
+        return refused("expected finite areas and stiffnesses above 0");
+    }
+    if body.links.iter().any(|[a, b]| a >= b || *b as usize >= count) {
+        return refused("expected links of two different nodes, the smaller first");
+    }
+    Ok(())
+}
+
+/// TODO remove
+pub(crate) fn knob(name: &str, default: f64) -> f64 {
+    std::env::var(format!("KNOB_{name}")).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
+}
