@@ -1,7 +1,7 @@
 """Edits of the manufactured shapes of the data, made by a script: which, and where their control points are.
 
-Control points are put by one rule on all shapes: the middles of the soles, where there are legs, and places as far from
-all others as can be, each with its mirror image. Shapes of the paper have the paper's own, and its displacements.
+Control points are put by one rule on all shapes: the middles of the soles, where there are legs, and vertices as far
+from all others as can be, each with its mirror image. Shapes of the paper have the paper's own, and its displacements.
 """
 
 from __future__ import annotations
@@ -36,8 +36,7 @@ COUNT = 12
 PAPER = ("ShapeNetChair1", "ShapeNetChair3", "chair2", "ShapeNetPlane1", "ShapeNetPlane2")
 LOW = 0.04  # of the height: what is a sole
 NEAR = 0.2  # in halves of the longest side: what belongs to the same foot as the point farthest out
-BESIDE = 0.1  # in halves: what is nearer to the mirror plane has no mirror image
-CANDIDATES = 500
+BESIDE = 0.1  # in halves: what is no farther from a control point gets no other
 UPWARD = np.array([0.0, 1, 0])
 
 
@@ -126,7 +125,7 @@ EDITS: list[tuple[str, Subject, Motion]] = [
     ("oak chair, back leaned", OAK, leaned(-0.05, 20)),
     ("office chair, seat wider", OFFICE, wider(RIGHT, 0.5, 0.2)),
     ("office chair, column longer", OFFICE, longer(UP, -0.6, -0.2, 0.4)),
-    ("office chair, back leaned", OFFICE, leaned(0.1, 20)),
+    ("office chair, back leaned", OFFICE, leaned(0.3, 20)),
     ("plastic chair, legs longer", PLASTIC, legs(-0.1, 0.5)),
     ("plastic chair, seat wider", PLASTIC, wider(RIGHT, 0.6, 0.3)),
     ("design chair, stem longer", DESIGN, longer(UP, -0.8, -0.3, 0.4)),
@@ -214,9 +213,8 @@ def control_points(data: Path, subject: Subject) -> Array:
     centre, half = (low + high) / 2, float((high - low).max()) / 2
     axes = subject.axes
     u = (shape.positions - centre) / half @ axes.T
-    places = (nm.farthest_points(shape.positions, shape.faces, CANDIDATES) - centre) / half @ axes.T
     chosen = soles(u) if subject.feet else np.empty((0, 3))
-    return spread(np.concatenate([u, places]), chosen) @ axes * half + centre
+    return spread(u, chosen) @ axes * half + centre
 
 
 def soles(u: Array) -> Array:
@@ -232,16 +230,16 @@ def soles(u: Array) -> Array:
 
 
 def spread(places: Array, chosen: Array) -> Array:
-    """`COUNT` points: those that are chosen, then always the place farthest from all of them and its mirror image."""
+    """At most `COUNT` points: those chosen, then always the place farthest from all of them, and its mirror image."""
     points = list(chosen) or [places[np.linalg.norm(places, axis=1).argmax()]]
-    while len(points) < COUNT:
-        away = np.linalg.norm(places[:, None] - np.array(points), axis=2).min(axis=1)
+    away = np.linalg.norm(places[:, None] - np.array(points), axis=2).min(axis=1)
+    while len(points) < COUNT and away.max() > BESIDE:
         found = places[away.argmax()]
-        points.append(found)
-        if abs(found[RIGHT]) > BESIDE and len(points) < COUNT:
-            mirrored = places[np.linalg.norm(places - found * [-1, 1, 1], axis=1).argmin()]
-            if np.linalg.norm(mirrored - np.array(points), axis=1).min() > BESIDE:
-                points.append(mirrored)
+        mirrored = places[np.linalg.norm(places - found * [-1, 1, 1], axis=1).argmin()]
+        for point in (found, mirrored)[: COUNT - len(points)]:
+            if np.linalg.norm(point - np.array(points), axis=1).min() > BESIDE:
+                points.append(point)
+                away = np.minimum(away, np.linalg.norm(places - point, axis=1))
     return np.array(points)
 
 
