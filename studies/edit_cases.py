@@ -37,6 +37,7 @@ PAPER = ("ShapeNetChair1", "ShapeNetChair3", "chair2", "ShapeNetPlane1", "ShapeN
 LOW = 0.04  # of the height: what is a sole
 NEAR = 0.2  # in halves of the longest side: what belongs to the same foot as the point farthest out
 BESIDE = 0.1  # in halves: what is no farther from a control point gets no other
+STANDS = 0.02  # of the longest side: a foot that is moved by less stands
 UPWARD = np.array([0.0, 1, 0])
 
 
@@ -244,12 +245,13 @@ def spread(places: Array, chosen: Array) -> Array:
 
 
 def _edit(name: str, shape: nm.Shape, p: Array, q: Array, up: Array | None) -> Edit:
-    """An edit; its feet are the moved control points in the lowest tenth of them."""
+    """An edit; its feet are the control points in the lowest tenth of them that are moved by more than `STANDS`."""
     if up is None:
         return Edit(name, shape, p, q)
     height = p @ up
     low = height < height.min() + 0.1 * np.ptp(height)
-    return Edit(name, shape, p, q, tuple(np.flatnonzero(low & (p != q).any(axis=1)).tolist()))
+    moved = np.linalg.norm(q - p, axis=1) > STANDS * np.ptp(shape.bounds, axis=0).max()
+    return Edit(name, shape, p, q, tuple(np.flatnonzero(low & moved).tolist()))
 
 
 @cache
