@@ -89,6 +89,8 @@ pub struct Relaxed {
     x: Vec<Position>,
     y: Vec<Position>,
     maps: Vec<Matrix<3>>,
+    /// Control points.
+    m: usize,
     /// How much of the thin plate, and that.
     share: f64,
     plate: Option<Bent>,
@@ -138,6 +140,7 @@ impl Elastic {
         let mut world = p.to_vec();
         let rest_of = &body.nodes[p.len()..];
         world.extend(rest_of.iter().enumerate().map(|(at, c)| c * frame.half + frame.centre[at % dim]));
+        let system = System::new(m, nodes.len(), &body.links);
         // By themselves, as `Handles` has them.
         let mut logits = weights.logits(p, &mut |_| true)?;
         logits.extend(weights.logits(&world[p.len()..], &mut |_| true)?);
@@ -146,8 +149,8 @@ impl Elastic {
             frame,
             p: p.to_vec(),
             world,
-            rest: Rest::new(&nodes, m, &body),
-            system: System::new(m, nodes.len(), &body.links),
+            rest: Rest::new(&nodes, m, &body, &system),
+            system,
             plate: Plate::new(&nodes[..m], dim),
             near: Near::new(&nodes),
             roots: lift::roots(&logits, m),
@@ -203,7 +206,7 @@ impl Elastic {
             1.0 / (1.0 + (FORETELLS * (plate.error + ROUNDING) / (force + ROUNDING)).powi(PASSAGE))
         });
         let solve::Moved { y, maps, .. } = y_and_r;
-        Ok(Some(Relaxed { x: self.nodes.clone(), y, maps, share, plate }))
+        Ok(Some(Relaxed { x: self.nodes.clone(), y, maps, m, share, plate }))
     }
 
     /// The maps of the control points that are oriented.
@@ -288,6 +291,19 @@ fn check_body(body: &Body, p: &[f64], dim: usize) -> Result<(), Error> {
     if body.links.iter().any(|[a, b]| a >= b || *b as usize >= count) {
         return refused("expected links of two different nodes, the smaller first");
     }
+    // From the control points on, as often as there is something new: or a system has no solution.
+    let mut reached: Vec<bool> = (0..count).map(|node| node < p.len() / dim).collect();
+    let mut more = true;
+    while std::mem::take(&mut more) {
+        for ends in &body.links {
+            let [a, b] = ends.map(|end| end as usize);
+            more |= reached[a] != reached[b];
+            (reached[a], reached[b]) = (reached[a] | reached[b], reached[a] | reached[b]);
+        }
+    }
+    if reached.contains(&false) {
+        return refused("expected every node to be linked to a control point");
+    }
     Ok(())
 }
 
@@ -295,3 +311,6 @@ fn check_body(body: &Body, p: &[f64], dim: usize) -> Result<(), Error> {
 pub(crate) fn knob(name: &str, default: f64) -> f64 {
     std::env::var(format!("KNOB_{name}")).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
 }
+
+#[cfg(test)]
+mod tests;
