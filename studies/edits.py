@@ -14,42 +14,22 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cache
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 from edit_cases import Edit, edits
-from numpy.typing import ArrayLike
 
 import neuralmls as nm
 from neuralmls_research.experiments.loose_parts import with_loose_parts
-from neuralmls_research.experiments.methods import METHODS, Array, Bound, Geometry, Method
+from neuralmls_research.experiments.methods import METHODS, Array, Bound, Method
 from neuralmls_research.metrics import Bends, Contacts, flipped_triangles, overstretched, singular_values
 from neuralmls_research.metrics.triangles import normals
-
-
-def relaxed(weights: Literal["neural", "shape-aware"]) -> Method:
-    """Weights with the whole of the elastic finish."""
-
-    def bind(shape: Geometry, p: ArrayLike) -> Bound:
-        assert isinstance(shape, nm.Shape)
-        points = nm.ControlPoints(p)
-        map = nm.Session(points, weights=weights, handles="exact", relax=1.0).fit(shape)
-        bound = map.bind(shape)
-
-        def space(q: ArrayLike) -> Callable[[Array], Array]:
-            return map.moved(points.with_targets(q)).at
-
-        return Bound(lambda q: map.moved(points.with_targets(q)).frame(bound)[0], space)
-
-    return Method(f"{weights}, relaxed", bind)
-
 
 RUN: dict[str, Method] = {
     "neural": METHODS["neural-exact"],
     "shape-aware": METHODS["shape-aware-exact"],
     "arap": with_loose_parts(METHODS["arap"]),
-    "neural-relax": relaxed("neural"),
-    "shape-aware-relax": relaxed("shape-aware"),
+    "neural-relax": METHODS["neural-relax"],
+    "shape-aware-relax": METHODS["shape-aware-relax"],
 }
 OURS = ("neural", "shape-aware")  # the better of which a finish, or a choice, is not to be worse than
 WORSE = 1.05
