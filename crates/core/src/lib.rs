@@ -36,7 +36,7 @@ pub use deformer::{Deformed, Deformer, Pose};
 pub use error::Error;
 pub use geometry::{placement, Frame, Order, PointTree};
 pub use machine::{memory, progress};
-pub use mls::{best_rotation, Transform, ANCHOR_WEIGHT, RIDGE};
+pub use mls::{best_rotation, piece, Piece, Transform, ANCHOR_WEIGHT, RIDGE};
 pub use probe::{places, Look, Probe, PLACES};
 pub use weights::inverse_distance::InverseDistance;
 pub use weights::network::{train, Layer, Network, Schedule, Trained, Training, MOST_CONTROL_POINTS};

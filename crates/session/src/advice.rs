@@ -61,9 +61,8 @@ impl Map {
     /// # Errors
     /// As [`Map::aim`].
     pub fn look(&self, probe: &Probe) -> Result<Look, Error> {
-        let (q, orientations) = (self.session().points.targets(), self.session().points.orientations());
-        let pose = Pose { q: &q, orientations: orientations.as_deref() };
-        Ok(probe.look(pose, self.session().settings.temperature, &self.session().adherence())?)
+        let posed = self.session().posed();
+        Ok(probe.look(posed.pose(), self.session().settings.temperature, &self.session().adherence())?)
     }
 
     /// What is likely bad about the shape that was probed, and what would help; nothing where everything moves as one.
@@ -75,8 +74,8 @@ impl Map {
     /// As [`Map::aim`].
     pub fn advise(&self, probe: &Probe, other: Other<'_>) -> Result<Vec<Advice>, Error> {
         let (points, settings) = (&self.session().points, &self.session().settings);
-        let (q, orientations) = (points.targets(), points.orientations());
-        let pose = Pose { q: &q, orientations: orientations.as_deref() };
+        let posed = self.session().posed();
+        let pose = posed.pose();
         let mut found: Vec<Advice> = self.misses()?.into_iter().collect();
         for advice in probe.advise(pose, settings.temperature, &self.session().adherence())? {
             let dim = points.dim();
@@ -133,15 +132,14 @@ impl Map {
     /// Control points that stop short of their targets.
     fn misses(&self) -> Result<Option<Advice>, Error> {
         let points = &self.session().points;
-        let (aim, orientations) = (self.aim()?, points.orientations());
-        let aimed = Pose { q: &aim.targets, orientations: orientations.as_deref() };
+        let (dim, aim, posed) = (points.dim(), self.aim()?, self.session().posed());
+        let aimed = Pose { q: &aim.targets, ..posed.pose() };
         let landed = self.handles().land(aimed, self.session().settings.temperature)?;
-        let away: Vec<f64> = points
-            .iter()
-            .zip(landed.chunks_exact(points.dim()))
-            .map(|(point, at)| distance(&point.target, at))
-            .collect();
-        let longest = points.iter().map(|point| distance(&point.target, &point.position)).fold(0.0, f64::max);
+        let each = |a: &[f64], b: &[f64]| -> Vec<f64> {
+            a.chunks_exact(dim).zip(b.chunks_exact(dim)).map(|(a, b)| distance(a, b)).collect()
+        };
+        let away = each(&posed.targets, &landed);
+        let longest = each(&posed.targets, &points.sources()).into_iter().fold(0.0, f64::max);
         let mut allowed = ARRIVED * self.side();
         if self.session().settings.handles == HandlesSetting::Soft {
             allowed = allowed.max((SHORT * longest).min(WIDE * self.side()));
@@ -167,10 +165,9 @@ impl Map {
     /// What takes the control points to their targets.
     fn what_arrives(&self) -> Result<String, Error> {
         let points = &self.session().points;
-        let (q, orientations) = (points.targets(), points.orientations());
-        let pose = Pose { q: &q, orientations: orientations.as_deref() };
-        let aim =
-            self.handles().aim_carefully(pose, self.session().settings.temperature, &points.weights())?;
+        let posed = self.session().posed();
+        let temperature = self.session().settings.temperature;
+        let aim = self.handles().aim_carefully(posed.pose(), temperature, &points.weights())?;
         Ok(match (aim.soft, self.remedy()?) {
             (None, _) => "exact handles arrive".into(),
             (_, Some(remedy)) => format!("exact handles arrive {remedy}"),

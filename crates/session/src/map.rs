@@ -167,8 +167,7 @@ impl Map {
     /// # Errors
     /// Where the orientations do not fit.
     pub fn aim(&self) -> Result<Aim, Error> {
-        let (q, orientations) = (self.session.points.targets(), self.session.points.orientations());
-        self.session.aim(&self.handles, Pose { q: &q, orientations: orientations.as_deref() })
+        self.session.aim(&self.handles, self.session.posed().pose())
     }
 
     /// Binds the points `x` (n x dim); `tree`, where there is one, holds the same points.
@@ -195,8 +194,8 @@ impl Map {
         maps: bool,
         progress: &mut Progress<'_>,
     ) -> Result<Deformed, Error> {
-        let orientations = self.session.points.orientations();
-        let pose = Pose { q: &aim.targets, orientations: orientations.as_deref() };
+        let posed = self.session.posed();
+        let pose = Pose { q: &aim.targets, ..posed.pose() };
         Ok(bound.deform(pose, self.session.settings.temperature, maps, progress)?)
     }
 
