@@ -31,7 +31,7 @@ pub mod softmax;
 mod weights;
 
 pub use advice::{Advice, Better, Kind};
-pub use aim::{Aim, Anchor, Handles, Remedy, Soft};
+pub use aim::{Aim, Anchor, Handles, Remedy, Soft, Stiff};
 pub use deformer::{Deformed, Deformer, Pose};
 pub use error::Error;
 pub use geometry::{placement, Frame, Order, PointTree};

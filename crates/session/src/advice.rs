@@ -1,7 +1,7 @@
 //! Advice in words: what is likely bad about a deformation, where, and what would help. What is measured, and from when on it is told,
 //! stands in the core.
 
-use neuralmls_core::{Better, Kind, Look, Pose, Probe};
+use neuralmls_core::{Better, Kind, Look, Pose, Probe, Stiff, Transform};
 
 use serde_json::{json, Value};
 
@@ -18,7 +18,7 @@ const WIDE: f64 = 0.02;
 /// One thing that is likely bad.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Advice {
-    /// "misses", "folds", "torn" or "ungoverned".
+    /// "misses", "stiff", "folds", "torn" or "ungoverned".
     pub kind: &'static str,
     /// What is likely bad, where, and what would help.
     pub sentence: String,
@@ -26,8 +26,8 @@ pub struct Advice {
     pub place: Vec<f64>,
     /// The control points that it is about, by their numbers, the worst first.
     pub control_points: Vec<usize>,
-    /// How bad: the greatest distance from a target (misses), the part of the shape (folds), the greatest stretch (torn), the distance to
-    /// the nearest control point (ungoverned).
+    /// How bad: the greatest distance from a target (misses), how far a control point ends from its target where the others alone take it
+    /// (stiff), the part of the shape (folds), the greatest stretch (torn), the distance to the nearest control point (ungoverned).
     pub amount: f64,
 }
 
@@ -76,7 +76,7 @@ impl Map {
         let (points, settings) = (&self.session().points, &self.session().settings);
         let posed = self.session().posed();
         let pose = posed.pose();
-        let mut found: Vec<Advice> = self.misses()?.into_iter().collect();
+        let mut found: Vec<Advice> = self.misses()?.into_iter().chain(self.stiff()?).collect();
         for advice in probe.advise(pose, settings.temperature, &self.session().adherence())? {
             let dim = points.dim();
             let at = probe.places()[dim * advice.place..][..dim].to_vec();
@@ -159,6 +159,29 @@ impl Map {
             place: points[worst].position.clone(),
             control_points: short,
             amount: away[worst],
+        }))
+    }
+
+    /// Many control points whose motion is none that the transform can follow between them.
+    fn stiff(&self) -> Result<Option<Advice>, Error> {
+        let (points, posed) = (&self.session().points, self.session().posed());
+        let found = self.handles().stiff(posed.pose(), self.session().settings.temperature)?;
+        let Some(Stiff { now, affine, worst }) = found else {
+            return Ok(None);
+        };
+        let transform = if self.transform() == Transform::Similarity { "similarity" } else { "rigid" };
+        Ok(Some(Advice {
+            kind: "stiff",
+            sentence: format!(
+                "{transform} maps follow these {} control points worse than affine ones would: where the others alone take it, one ends {} \
+                 from its target, in the median, with the affine transform {}",
+                points.len(),
+                general(now, 2),
+                general(affine, 2)
+            ),
+            place: points[worst].position.clone(),
+            control_points: vec![worst],
+            amount: now,
         }))
     }
 
