@@ -181,3 +181,18 @@ def test_wrong_arguments_are_refused_in_a_sentence(weights: nm.NeuralWeights) ->
         nm.advise(BAR, [[0, 1, 2**40]], weights, ALONG)
     with pytest.raises(nm.ArgumentError, match="faces: expected an"):
         nm.advise(BAR, [[0.0, 1.0, 2.0]], weights, ALONG)
+
+
+def test_many_control_points_of_a_smooth_motion_ask_for_affine_maps() -> None:
+    p = BAR[nm.farthest_of(BAR, 60)]
+    bent = p + 0.2 * np.stack([np.sin(p[:, 1]), np.cos(p[:, 0]), np.sin(p[:, 0])], axis=1) + [0.2, 0, 0] * p
+    weights = nm.InverseDistanceWeights(p, alpha=2, bounds=BOX)
+    (stiff,) = [advice for advice in nm.advise(BAR, None, weights, bent) if advice.kind == "stiff"]
+    assert stiff.sentence.startswith("rigid maps follow these 60 control points worse than affine ones would")
+    assert "stiff" not in kinds(nm.advise(BAR, None, weights, bent, transform="affine"))
+    # What turns in parts is what rigid maps are for; and few control points say too little.
+    sin, cos = np.sin(1.2 * (p[:, 0] > 0)), np.cos(1.2 * (p[:, 0] > 0))
+    twisted = np.stack([p[:, 0], cos * p[:, 1] - sin * p[:, 2], sin * p[:, 1] + cos * p[:, 2]], axis=1)
+    assert "stiff" not in kinds(nm.advise(BAR, None, weights, twisted))
+    few = nm.InverseDistanceWeights(p[:40], alpha=2, bounds=BOX)
+    assert "stiff" not in kinds(nm.advise(BAR, None, few, bent[:40]))

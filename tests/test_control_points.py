@@ -75,15 +75,20 @@ def test_a_round_trip_gives_the_same_numbers_bit_for_bit(tmp_path: Path, ending:
 
 def test_the_documented_examples_are_read_and_valid(tmp_path: Path) -> None:
     page = (DOCS / "control-points.md").read_text(encoding="utf-8")
-    examples = dict(re.findall(r"```(json|csv)\n(.*?)```", page, flags=re.DOTALL))
+    examples = re.findall(r"```(json|csv)\n(.*?)```", page, flags=re.DOTALL)
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
-    jsonschema.validate(json.loads(examples["json"]), SCHEMA)
-    for ending in ("json", "csv"):
-        points = ControlPoints.read(written(tmp_path, examples[ending], ending))
+    read = []
+    for ending, text in examples:
+        if ending == "json":
+            jsonschema.validate(json.loads(text), SCHEMA)
+        read.append(ControlPoints.read(written(tmp_path, text, ending)))
+    whole, held, table = read
+    for points, oriented in ((whole, (Orientation((0, 1, 0), 40),)), (table, ())):
         assert points.names[:2] == ("seat", "back-top")
         assert points.sources[:2].tolist() == [[0, 0.45, 0], [0, 0.95, -0.2]]
         assert points.targets[:2].tolist() == [[0, 0.45, 0], [0, 0.9, -0.4]]
-        assert points.orientations[2:] == (() if ending == "csv" else (Orientation((0, 1, 0), 40),))
+        assert points.orientations[2:] == oriented
+    assert (held.locked.tolist(), held.groups) == ([True, False, False], (None, "seat", "seat"))
 
 
 def test_unknown_keys_are_passed_over(tmp_path: Path) -> None:

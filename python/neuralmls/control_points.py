@@ -31,12 +31,19 @@ class ControlPoints:
         How each is turned and scaled; None for one that only moves, and does not resist turning.
     weights : (m,), 0 to 1, optional
         How closely each is to be met, of what the handles of a session ask of all; 1 if not given.
+    groups : m times str or None, optional
+        What each moves with: control points of one group move as one rigid piece (with the similarity transform one
+        that may be scaled), by the motion that fits their targets best, `min_R,t sum |R p_i + t - q_i|^2`, and what is
+        around them turns with it, but around those that have an orientation of their own. None for one that is free.
+    locked : (m,) bool, optional
+        Whether each stays as it is at rest, whatever its target, and holds what is around it; with one of a group
+        stays all of it.
 
     Raises
     ------
     ControlPointError
         There is none; two have the same name or the same source; a coordinate is not finite; shapes disagree; one
-        cannot be oriented so in its dimension.
+        cannot be oriented so in its dimension; a group is called nothing.
 
     Examples
     --------
@@ -52,6 +59,8 @@ class ControlPoints:
         names: Sequence[str] | None = None,
         orientations: Sequence[Orientation | None] | None = None,
         weights: ArrayLike | None = None,
+        groups: Sequence[str | None] | None = None,
+        locked: ArrayLike | None = None,
     ) -> None:
         p = _table(sources, "sources")
         q = p if targets is None else _table(targets, "targets")
@@ -61,15 +70,27 @@ class ControlPoints:
         labels = [f"p{i + 1}" for i in range(count)] if names is None else list(names)
         oriented = [None] * count if orientations is None else list(orientations)
         closely = np.ones(count) if weights is None else np.asarray(weights, np.float64)
-        for what, listed in (("a name", labels), ("an orientation or None", oriented), ("a weight", closely)):
+        pieces = [None] * count if groups is None else list(groups)
+        stay = np.zeros(count, bool) if locked is None else np.asarray(locked)
+        if stay.dtype != bool:
+            raise ControlPointError(f"locked: expected true or false for each control point, found {locked!r}")
+        for what, listed in (
+            ("a name", labels),
+            ("an orientation or None", oriented),
+            ("a weight", closely),
+            ("a group or None", pieces),
+            ("true or false", stay),
+        ):
             if len(listed) != count:
                 raise ControlPointError(f"expected {what} for each of {count} control points, found {len(listed)}")
         for i, label in enumerate(labels):
             if not isinstance(label, str):
                 raise ControlPointError(f"control point {i + 1} has no name")
-            if any("\ud800" <= letter <= "\udfff" for letter in label):  # no text file could hold it
-                raise ControlPointError(f"the name of control point {i + 1} has half of a surrogate pair in it")
-        self._core = _core.ControlPoints(labels, p, q, oriented, closely.tolist())
+            _check_text(label, f"the name of control point {i + 1}")
+        for i, group in enumerate(pieces):
+            if group is not None:
+                _check_text(group, f"the group of control point {i + 1}")
+        self._core = _core.ControlPoints(labels, p, q, oriented, closely.tolist(), pieces, stay.tolist())
 
     @classmethod
     def _of(cls, core: _core.ControlPoints) -> Self:
@@ -96,8 +117,8 @@ class ControlPoints:
         Raises
         ------
         FileError
-            The ending is another one, or that of a CSV file, which holds no orientations, and there are some; or the
-            file cannot be written; a file that was there is then untouched.
+            The ending is another one, or that of a CSV file, which holds no orientations, groups or locks, and there
+            are some; or the file cannot be written; a file that was there is then untouched.
         """
         session_files.write(_core.Session(self._core), path)
 
@@ -149,8 +170,50 @@ class ControlPoints:
         """How closely each is to be met, (m,)."""
         return _fixed(self._core.weights)
 
+    @property
+    def groups(self) -> tuple[str | None, ...]:
+        """The group of each; None for those that are free."""
+        return tuple(self._core.groups)
+
+    @property
+    def locked(self) -> NDArray[np.bool_]:
+        """Whether each is locked, (m,)."""
+        return _fixed(self._core.locked)
+
+    def grouped(self, names: Sequence[str], group: str | None) -> ControlPoints:
+        """Return the same control points, the named ones in a group, or with None in none.
+
+        Raises
+        ------
+        ArgumentError
+            There is no such control point.
+        ControlPointError
+            The group is called nothing.
+
+        Examples
+        --------
+        >>> points = ControlPoints([[0.0, 0], [1, 0], [5, 0]], names=["a", "b", "c"]).grouped(["a", "b"], "seat")
+        >>> points.moved({"seat": [0, 2]}).targets.tolist()
+        [[0.0, 2.0], [1.0, 2.0], [5.0, 0.0]]
+        """
+        if group is not None:
+            _check_text(group, "the group")
+        return ControlPoints._of(self._core.grouped(_names(names), group))
+
+    def with_locked(self, names: Sequence[str]) -> ControlPoints:
+        """Return the same control points, the named ones locked and no others.
+
+        Raises
+        ------
+        ArgumentError
+            There is no such control point.
+        """
+        return ControlPoints._of(self._core.with_locked(_names(names)))
+
     def oriented(self, orientations: Mapping[str, Orientation]) -> ControlPoints:
         """Return the same control points, the named ones turned and scaled further than they are.
+
+        The name of a group turns and scales its targets about their middle.
 
         Raises
         ------
@@ -163,7 +226,7 @@ class ControlPoints:
         return ControlPoints._of(core)
 
     def moved(self, offsets: Mapping[str, ArrayLike]) -> ControlPoints:
-        """Return the same control points, the targets of the named ones moved by offsets, each (d,).
+        """Return the same control points, the targets of the named ones, or groups, moved by offsets, each (d,).
 
         Raises
         ------
@@ -221,10 +284,23 @@ class ControlPoints:
         if (self.weights != 1).any():
             head.append("weight")
             columns.append(_said(self.weights[:, None]))
+        if any(self.groups):
+            head.append("group")
+            columns.append([group or "" for group in self.groups])
+        if self.locked.any():
+            head.append("locked")
+            columns.append(["locked" if one else "" for one in self.locked])
         return rows_table(f"{len(self)} control points", head, list(zip(*columns, strict=True)))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (_core.Session(self._core).to_json(),)
+
+
+def _check_text(text: object, what: str) -> None:
+    if not isinstance(text, str):
+        raise ControlPointError(f"expected {what} to be a text, found {text!r}")
+    if any("\ud800" <= letter <= "\udfff" for letter in text):  # no text file could hold it
+        raise ControlPointError(f"{what} has half of a surrogate pair in it")
 
 
 def _restored(text: str) -> ControlPoints:
@@ -236,7 +312,13 @@ def _said(rows: NDArray[np.float64]) -> list[str]:
     return [", ".join(f"{value:.4g}" for value in row) for row in rows]
 
 
-def _fixed(array: NDArray[np.float64]) -> NDArray[np.float64]:
+def _names(names: Sequence[str]) -> list[str]:
+    if isinstance(names, str) or not all(isinstance(name, str) for name in names):
+        raise ArgumentError(f"names: expected a list of names of control points, found {names!r}")
+    return list(names)
+
+
+def _fixed(array: NDArray[Any]) -> NDArray[Any]:
     array.flags.writeable = False
     return array
 

@@ -46,7 +46,7 @@ class Advice:
 
     Attributes
     ----------
-    kind : "misses", "folds", "torn" or "ungoverned"
+    kind : "misses", "stiff", "folds", "torn" or "ungoverned"
     sentence : str
         What is likely bad, where, and what would help.
     where : tuple of d floats
@@ -54,11 +54,12 @@ class Advice:
     control_points : tuple of str
         The names of those that it is about, the worst first.
     amount : float
-        How bad: the greatest distance from a target (misses), the part of the shape (folds), the greatest stretch
-        (torn), the distance to the nearest control point (ungoverned).
+        How bad: the greatest distance from a target (misses), how far a control point ends from its target where the
+        others alone take it (stiff), the part of the shape (folds), the greatest stretch (torn), the distance to the
+        nearest control point (ungoverned).
     """
 
-    kind: Literal["misses", "folds", "torn", "ungoverned"]
+    kind: Literal["misses", "stiff", "folds", "torn", "ungoverned"]
     sentence: str
     where: tuple[float, ...]
     control_points: tuple[str, ...]

@@ -415,6 +415,8 @@ class Map:
         """Return what is likely bad about a deformed shape, and what would help; nothing where all moves as one.
 
         - misses: control points that stop short of their targets;
+        - stiff: of 50 or more control points, that affine maps would follow their motion far more closely: with each of
+          them left out, the others take it to its target at least twice as closely;
         - folds: places where space is turned inside out, `det J <= 0`, with `J` the Jacobian of the map;
         - torn: places where `J` stretches far more than in most places, as between control points that move apart;
         - ungoverned: a part that moves, and is far from all control points.

@@ -382,3 +382,18 @@ def test_check_tells_once_of_exact_control_points_that_cannot_arrive(run, here):
     assert ran.code == 0
     assert "stop short of their targets, with exact handles: " in ran.err
     assert "do not arrive exactly" not in ran.err
+
+
+def test_a_group_moves_and_turns_by_its_name_and_what_is_locked_is_named(run, here):
+    points = nm.ControlPoints.read(here / "points.csv").with_locked(["foot"]).grouped(["side", "top"], "upper")
+    points.write(here / "held.json")
+    held = ("deform", "shape.obj", "--points", "held.json", *CLASSIC)
+    ran = run(*held, "-o", "out.obj", "--move", "upper=0,1,0", "--turn", "upper=y,90", "--move", "foot=1,0,0", "--json")
+    told = json.loads(ran.out)
+    assert [point["name"] for point in told["control_points"] if point["moved"] == 0] == ["foot"]
+    assert max(point["distance_to_target"] for point in told["control_points"]) < 1e-6
+    assert "the targets and rotations of 'foot' are not used" in ran.err
+    upper = points.moved({"upper": [0, 1, 0], "foot": [1, 0, 0]}).oriented({"upper": nm.Orientation((0, 1, 0), 90)})
+    shape = nm.read("shape.obj")
+    expected = nm.Session(upper, weights="inverse-distance").fit(shape).at(shape.positions)
+    assert np.abs(nm.read("out.obj").positions - expected).max() < 1e-6

@@ -33,12 +33,12 @@ pub mod softmax;
 mod weights;
 
 pub use advice::{Advice, Better, Kind};
-pub use aim::{Aim, Anchor, Handles, Remedy, Soft};
+pub use aim::{Aim, Anchor, Handles, Remedy, Soft, Stiff};
 pub use deformer::{Deformed, Deformer, Pose};
 pub use error::Error;
 pub use geometry::{placement, Frame, Order, PointTree};
 pub use machine::{memory, progress};
-pub use mls::{best_rotation, Transform, ANCHOR_WEIGHT, RIDGE};
+pub use mls::{best_rotation, piece, Piece, Transform, ANCHOR_WEIGHT, RIDGE};
 pub use probe::{places, Look, Probe, PLACES};
 pub use relax::{Body, Elastic, Lift, Relaxed};
 pub use weights::inverse_distance::InverseDistance;

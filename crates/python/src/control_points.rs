@@ -112,12 +112,16 @@ impl ControlPoints {
         targets: PyReadonlyArray2<'_, f64>,
         orientations: Vec<Option<Orientation>>,
         weights: Vec<f64>,
+        groups: Vec<Option<String>>,
+        locked: Vec<bool>,
     ) -> PyResult<ControlPoints> {
         let (p, q) = (sources.as_array(), targets.as_array());
-        let points = names.into_iter().enumerate().map(|(i, name)| ControlPoint {
+        let points = names.into_iter().zip(groups).enumerate().map(|(i, (name, group))| ControlPoint {
             target: q.row(i).to_vec(),
             orientation: orientations[i].map(|orientation| orientation.0),
             weight: weights[i],
+            group,
+            locked: locked[i],
             ..ControlPoint::new(name, p.row(i).to_vec())
         });
         neuralmls_session::ControlPoints::new(sources.shape()[1], points.collect())
@@ -170,6 +174,24 @@ impl ControlPoints {
     #[getter]
     fn weights<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_vec(py, self.0.weights())
+    }
+
+    #[getter]
+    fn groups(&self) -> Vec<Option<&str>> {
+        self.0.iter().map(|point| point.group.as_deref()).collect()
+    }
+
+    #[getter]
+    fn locked<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        PyArray1::from_iter(py, self.0.iter().map(|point| point.locked))
+    }
+
+    fn grouped(&self, names: Vec<String>, group: Option<&str>) -> PyResult<ControlPoints> {
+        self.0.grouped(&names, group).map(ControlPoints).map_err(raised)
+    }
+
+    fn with_locked(&self, names: Vec<String>) -> PyResult<ControlPoints> {
+        self.0.with_locked(&names).map(ControlPoints).map_err(raised)
     }
 
     fn index(&self, name: &str) -> PyResult<usize> {

@@ -106,9 +106,8 @@ impl Session {
 
     /// Where to aim so that the control points arrive as closely as the settings say, m x d; `handles` are those of its control points.
     fn aim<'py>(&self, py: Python<'py>, handles: &Handles) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let (q, orientations) = (self.0.points.targets(), self.0.points.orientations());
-        let pose = Pose { q: &q, orientations: orientations.as_deref() };
-        let aim = py.detach(|| self.0.aim(&handles.0, pose)).map_err(raised)?;
+        let posed = self.0.posed();
+        let aim = py.detach(|| self.0.aim(&handles.0, posed.pose())).map_err(raised)?;
         table(py, aim.targets, self.0.points.dim())
     }
 

@@ -1,7 +1,7 @@
 //! Advice in words: what is likely bad about a deformation, where, and what would help. What is measured, and from when on it is told,
 //! stands in the core.
 
-use neuralmls_core::{Better, Kind, Look, Pose, Probe};
+use neuralmls_core::{Better, Kind, Look, Pose, Probe, Stiff, Transform};
 
 use serde_json::{json, Value};
 
@@ -18,7 +18,7 @@ const WIDE: f64 = 0.02;
 /// One thing that is likely bad.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Advice {
-    /// "misses", "folds", "torn" or "ungoverned".
+    /// "misses", "stiff", "folds", "torn" or "ungoverned".
     pub kind: &'static str,
     /// What is likely bad, where, and what would help.
     pub sentence: String,
@@ -26,8 +26,8 @@ pub struct Advice {
     pub place: Vec<f64>,
     /// The control points that it is about, by their numbers, the worst first.
     pub control_points: Vec<usize>,
-    /// How bad: the greatest distance from a target (misses), the part of the shape (folds), the greatest stretch (torn), the distance to
-    /// the nearest control point (ungoverned).
+    /// How bad: the greatest distance from a target (misses), how far a control point ends from its target where the others alone take it
+    /// (stiff), the part of the shape (folds), the greatest stretch (torn), the distance to the nearest control point (ungoverned).
     pub amount: f64,
 }
 
@@ -71,9 +71,8 @@ impl Map {
     /// # Errors
     /// As [`Map::aim`].
     pub fn look(&self, probe: &Probe) -> Result<Look, Error> {
-        let (q, orientations) = (self.session().points.targets(), self.session().points.orientations());
-        let pose = Pose { q: &q, orientations: orientations.as_deref() };
-        Ok(probe.look(pose, self.session().settings.temperature, &self.session().adherence())?)
+        let posed = self.session().posed();
+        Ok(probe.look(posed.pose(), self.session().settings.temperature, &self.session().adherence())?)
     }
 
     /// What is likely bad about the shape that was probed, and what would help; nothing where everything moves as one.
@@ -85,9 +84,9 @@ impl Map {
     /// As [`Map::aim`].
     pub fn advise(&self, probe: &Probe, other: Other<'_>) -> Result<Vec<Advice>, Error> {
         let (points, settings) = (&self.session().points, &self.session().settings);
-        let (q, orientations) = (points.targets(), points.orientations());
-        let pose = Pose { q: &q, orientations: orientations.as_deref() };
-        let mut found: Vec<Advice> = self.misses()?.into_iter().collect();
+        let posed = self.session().posed();
+        let pose = posed.pose();
+        let mut found: Vec<Advice> = self.misses()?.into_iter().chain(self.stiff()?).collect();
         for advice in probe.advise(pose, settings.temperature, &self.session().adherence())? {
             let dim = points.dim();
             let at = probe.places()[dim * advice.place..][..dim].to_vec();
@@ -143,15 +142,14 @@ impl Map {
     /// Control points that stop short of their targets.
     fn misses(&self) -> Result<Option<Advice>, Error> {
         let points = &self.session().points;
-        let (aim, orientations) = (self.aim()?, points.orientations());
-        let aimed = Pose { q: &aim.targets, orientations: orientations.as_deref() };
+        let (dim, aim, posed) = (points.dim(), self.aim()?, self.session().posed());
+        let aimed = Pose { q: &aim.targets, ..posed.pose() };
         let landed = self.handles().land(aimed, self.session().settings.temperature)?;
-        let away: Vec<f64> = points
-            .iter()
-            .zip(landed.chunks_exact(points.dim()))
-            .map(|(point, at)| distance(&point.target, at))
-            .collect();
-        let longest = points.iter().map(|point| distance(&point.target, &point.position)).fold(0.0, f64::max);
+        let each = |a: &[f64], b: &[f64]| -> Vec<f64> {
+            a.chunks_exact(dim).zip(b.chunks_exact(dim)).map(|(a, b)| distance(a, b)).collect()
+        };
+        let away = each(&posed.targets, &landed);
+        let longest = each(&posed.targets, &points.sources()).into_iter().fold(0.0, f64::max);
         let mut allowed = ARRIVED * self.side();
         if self.session().settings.handles == HandlesSetting::Soft {
             allowed = allowed.max((SHORT * longest).min(WIDE * self.side()));
@@ -174,13 +172,35 @@ impl Map {
         }))
     }
 
+    /// Many control points whose motion is none that the transform can follow between them.
+    fn stiff(&self) -> Result<Option<Advice>, Error> {
+        let (points, posed) = (&self.session().points, self.session().posed());
+        let found = self.handles().stiff(posed.pose(), self.session().settings.temperature)?;
+        let Some(Stiff { now, affine, worst }) = found else {
+            return Ok(None);
+        };
+        let transform = if self.transform() == Transform::Similarity { "similarity" } else { "rigid" };
+        Ok(Some(Advice {
+            kind: "stiff",
+            sentence: format!(
+                "{transform} maps follow these {} control points worse than affine ones would: where the others alone take it, one ends {} \
+                 from its target, in the median, with the affine transform {}",
+                points.len(),
+                general(now, 2),
+                general(affine, 2)
+            ),
+            place: points[worst].position.clone(),
+            control_points: vec![worst],
+            amount: now,
+        }))
+    }
+
     /// What takes the control points to their targets.
     fn what_arrives(&self) -> Result<String, Error> {
         let points = &self.session().points;
-        let (q, orientations) = (points.targets(), points.orientations());
-        let pose = Pose { q: &q, orientations: orientations.as_deref() };
-        let aim =
-            self.handles().aim_carefully(pose, self.session().settings.temperature, &points.weights())?;
+        let posed = self.session().posed();
+        let temperature = self.session().settings.temperature;
+        let aim = self.handles().aim_carefully(posed.pose(), temperature, &points.weights())?;
         Ok(match (aim.soft, self.remedy()?) {
             (None, _) => "exact handles arrive".into(),
             (_, Some(remedy)) => format!("exact handles arrive {remedy}"),

@@ -11,6 +11,9 @@ use serde_json::{Map, Value};
 mod axes;
 mod check;
 mod fit;
+mod hold;
+
+pub use hold::Posed;
 
 /// One control point, in the coordinates of the shape's file.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,11 +28,11 @@ pub struct ControlPoint {
     pub orientation: Option<Orientation>,
     /// How closely it is to be met, 0 to 1, of what `handles` asks of all.
     pub weight: f64,
-    /// Whether the editor leaves it where it is.
+    /// Whether it stays as it is at rest, and holds what is around it.
     pub locked: bool,
     /// The name of the control point whose mirror image it is.
     pub mirror_of: Option<String>,
-    /// What it belongs to, for the user.
+    /// What it moves with as one piece: all control points of the same group.
     pub group: Option<String>,
     /// Keys of other programs, kept.
     pub others: Map<String, Value>,
@@ -175,12 +178,12 @@ impl ControlPoints {
         ControlPoints::new(self.dim, list)
     }
 
-    /// The same, the target of one moved by an offset.
+    /// The same, the target of one, or of a group, moved by an offset.
     ///
     /// # Errors
     /// An argument, where there is no such name, or the offset is not of d finite numbers.
     pub fn moved(&self, name: &str, offset: &[f64]) -> Result<ControlPoints, Error> {
-        let index = self.index(name)?;
+        let members = self.named(name)?;
         let dim = self.dim;
         if offset.len() != dim || offset.iter().any(|c| !c.is_finite()) {
             let found = shown(&tuple(offset, number));
@@ -188,16 +191,18 @@ impl ControlPoints {
             return Err(Error::argument(message));
         }
         let mut list = self.list.clone();
-        list[index].target.iter_mut().zip(offset).for_each(|(c, by)| *c += by);
+        for i in members {
+            list[i].target.iter_mut().zip(offset).for_each(|(c, by)| *c += by);
+        }
         ControlPoints::new(dim, list)
     }
 
-    /// The same, one oriented further than it is.
+    /// The same, one oriented further than it is, or the targets of a group turned about their middle.
     ///
     /// # Errors
     /// An argument, where there is no such name, or it cannot be oriented so.
     pub fn oriented(&self, name: &str, orientation: Orientation) -> Result<ControlPoints, Error> {
-        let index = self.index(name)?;
+        let members = self.named(name)?;
         if !orientation.fits(self.dim) {
             let how = if self.dim == 1 {
                 "on a line: it cannot turn"
@@ -207,8 +212,13 @@ impl ControlPoints {
             return Err(Error::argument(format!("{} is {how}", quoted(name))));
         }
         let mut list = self.list.clone();
-        let before = &mut list[index].orientation;
-        *before = Some(before.map_or(orientation, |before| before.then(&orientation)));
+        match members[..] {
+            [index] if list[index].name == name => {
+                let before = &mut list[index].orientation;
+                *before = Some(before.map_or(orientation, |before| before.then(&orientation)));
+            }
+            _ => hold::turn(&mut list, &members, &orientation, self.dim),
+        }
         ControlPoints::new(self.dim, list)
     }
 
@@ -280,6 +290,9 @@ fn check_rest(point: &ControlPoint, dim: usize) -> Result<(), Error> {
             let s = if dim == 1 { "" } else { "s" };
             return Err(Error::control_point(format!("{name} has {dim} coordinate{s}, and cannot {how}")));
         }
+    }
+    if point.group.as_ref().is_some_and(|group| group.trim().is_empty()) {
+        return Err(Error::control_point(format!("the group of {name} has no name")));
     }
     if !(0.0..=1.0).contains(&point.weight) {
         let found = number(point.weight);

@@ -28,7 +28,7 @@ mod text;
 mod words;
 
 pub use advice::{to_json as advice_to_json, Advice};
-pub use control_points::{ControlPoint, ControlPoints};
+pub use control_points::{ControlPoint, ControlPoints, Posed};
 pub use error::{Error, ErrorKind};
 pub use files::{join, read};
 pub use map::Map;

@@ -190,8 +190,8 @@ impl Map {
     pub fn relaxed(&self, aim: &Aim) -> Result<Option<Relaxed>, Error> {
         let settings = &self.session.settings;
         let Some(elastic) = self.elastic.as_ref().filter(|_| settings.relax > 0.0) else { return Ok(None) };
-        let orientations = self.session.points.orientations();
-        let pose = Pose { q: &aim.targets, orientations: orientations.as_deref() };
+        let posed = self.session.posed();
+        let pose = Pose { q: &aim.targets, ..posed.pose() };
         Ok(elastic.relax(pose, settings.temperature, settings.transform)?)
     }
 
@@ -215,8 +215,7 @@ impl Map {
     /// # Errors
     /// Where the orientations do not fit.
     pub fn aim(&self) -> Result<Aim, Error> {
-        let (q, orientations) = (self.session.points.targets(), self.session.points.orientations());
-        self.session.aim(&self.handles, Pose { q: &q, orientations: orientations.as_deref() })
+        self.session.aim(&self.handles, self.session.posed().pose())
     }
 
     /// Binds the points `x` (n x dim); `tree`, where there is one, holds the same points.
@@ -265,8 +264,8 @@ impl Map {
         mut maps: Option<&mut [f64]>,
         progress: &mut Progress<'_>,
     ) -> Result<(), Error> {
-        let (settings, orientations) = (&self.session.settings, self.session.points.orientations());
-        let pose = Pose { q: &aim.targets, orientations: orientations.as_deref() };
+        let (settings, posed) = (&self.session.settings, self.session.posed());
+        let pose = Pose { q: &aim.targets, ..posed.pose() };
         bound.deform_into(pose, settings.temperature, y, maps.as_deref_mut(), progress)?;
         if let Some(relaxed) = self.relaxed(aim)? {
             bound.relax(&relaxed, settings.relax, y, maps)?;

@@ -20,9 +20,9 @@ const HELD: f64 = 0.01;
 pub struct Arrival {
     /// Its name.
     pub name: String,
-    /// How far its target is from its place at rest.
+    /// How far where it is to go is from its place at rest.
     pub moved: f64,
-    /// How far it ends from its target, in the file as it is written.
+    /// How far it ends from where it is to go (its target, but in a group, or locked), in the file as it is written.
     pub distance_to_target: f64,
     /// Of an oriented one: by how many degrees it was to turn, how many are missing, and its scale.
     pub orientation: Option<OrientationArrival>,
@@ -88,9 +88,9 @@ impl Map {
     /// As [`Map::aim`].
     pub fn report(&self, aim: &Aim, held: Option<&Held<'_>>) -> Result<Report, Error> {
         let points = &self.session().points;
-        let (dim, targets, orientations) = (points.dim(), points.targets(), points.orientations());
+        let (dim, posed, stay) = (points.dim(), self.session().posed(), points.stay());
         let temperature = self.session().settings.temperature;
-        let aimed = Pose { q: &aim.targets, orientations: orientations.as_deref() };
+        let aimed = Pose { q: &aim.targets, ..posed.pose() };
         let landed = self.handles().land_with_maps(aimed, temperature)?;
         let arrived = held.map_or_else(|| landed.positions.clone(), |held| (held.round)(&landed.positions));
         let maps = landed.maps.unwrap_or_default();
@@ -99,9 +99,9 @@ impl Map {
             .enumerate()
             .map(|(i, point)| Arrival {
                 name: point.name.clone(),
-                moved: distance(&point.target, &point.position),
-                distance_to_target: distance(&arrived[dim * i..][..dim], &targets[dim * i..][..dim]),
-                orientation: point.orientation.as_ref().map(|orientation| OrientationArrival {
+                moved: distance(&posed.targets[dim * i..][..dim], &point.position),
+                distance_to_target: distance(&arrived[dim * i..][..dim], &posed.targets[dim * i..][..dim]),
+                orientation: point.orientation.filter(|_| !stay[i]).map(|orientation| OrientationArrival {
                     degrees: orientation.degrees,
                     degrees_to_rotation: angle(
                         &maps[dim * dim * i..][..dim * dim],
@@ -121,7 +121,8 @@ impl Map {
             None => self.not_arrived(aim, remedy.as_deref()),
             Some(_) => None,
         };
-        let mut warnings: Vec<String> = self.not_parted()?.into_iter().chain(not_arrived.clone()).collect();
+        let mut warnings = points.left_by_holding(&posed, self.transform(), ARRIVED * self.side());
+        warnings.extend(self.not_parted()?.into_iter().chain(not_arrived.clone()));
         let longest = control_points.iter().map(|point| point.moved).fold(0.0, f64::max);
         let coarse = held.and_then(|held| not_held(held, longest));
         let handles = self.in_words(soft.is_some(), self.any_short(aim), coarse.is_some());
@@ -150,13 +151,12 @@ impl Map {
 
     /// With what the control points would arrive, in words; none where nothing that was tried helps.
     pub(crate) fn remedy(&self) -> Result<Option<String>, Error> {
-        let (q, orientations) = (self.session().points.targets(), self.session().points.orientations());
-        let pose = Pose { q: &q, orientations: orientations.as_deref() };
+        let posed = self.session().posed();
         let adherence = match self.session().settings.handles {
             HandlesSetting::Soft => self.session().points.weights(),
             _ => self.session().adherence(),
         };
-        let found = self.handles().remedy(pose, self.session().settings.temperature, &adherence)?;
+        let found = self.handles().remedy(posed.pose(), self.session().settings.temperature, &adherence)?;
         Ok(found.map(remedy_in_words))
     }
 

@@ -1,6 +1,6 @@
 //! What a person sets: control points, settings, frame.
 
-use crate::control_points::ControlPoints;
+use crate::control_points::{ControlPoints, Posed};
 use neuralmls_core::Frame;
 
 use crate::error::Error;
@@ -136,6 +136,11 @@ impl Session {
             frame: None,
             others: Map::new(),
         }
+    }
+
+    /// Where the map takes the control points: to their targets, but for groups and what is locked.
+    pub fn posed(&self) -> Posed {
+        self.points.posed(self.settings.transform)
     }
 }
 

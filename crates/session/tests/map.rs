@@ -264,3 +264,67 @@ fn shape_aware_weights_are_refused_where_no_shape_is_known() {
         session(WeightsSettings::ShapeAware { seed: 0 }).fit(None, None, &mut |_| true).err().unwrap();
     assert!(error.message.contains("shape-aware weights need at least one shape to learn from"), "{error}");
 }
+
+/// p1 and p2 in a group, or locked, and what a map's local maps are between them, at p3, and far from both.
+fn held(session: &Session, at: [f64; 3]) -> (Vec<f64>, Vec<f64>) {
+    let map = fitted(session);
+    let bound = map.bind(at.to_vec(), None, &mut |_| true).unwrap();
+    let deformed = map.deform(&bound, &map.aim().unwrap(), true, &mut |_| true).unwrap();
+    (deformed.positions, deformed.maps.unwrap())
+}
+
+#[test]
+fn what_is_around_a_group_turns_with_it() {
+    let free = session(classic());
+    let points = free.points.grouped(&["p3".into(), "p4".into()], Some("tips")).unwrap();
+    let tips = Session { points, ..free.clone() };
+    let quarter = Orientation::new([1.0, 0.0, 0.0], 90.0, 1.0).unwrap();
+    let turned = tips.points.oriented("tips", quarter).unwrap();
+    let as_one = Session { points: turned.clone(), ..tips.clone() };
+    let each = Session { points: turned.grouped(&["p3".into(), "p4".into()], None).unwrap(), ..free };
+    let off = |session: &Session| {
+        let (_, map) = held(session, [0.0, 0.97, 0.02]);
+        let maps = map.iter().zip(quarter.matrix());
+        maps.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    };
+    assert!(off(&as_one) < 0.1, "{}", off(&as_one));
+    assert!(off(&each) > 2.0 * off(&as_one), "{}", off(&each));
+    let report = fitted(&as_one).report(&fitted(&as_one).aim().unwrap(), None).unwrap();
+    assert_eq!((report.handles.as_str(), report.warnings), ("exact", vec![]));
+}
+
+#[test]
+fn a_locked_control_point_stays_and_what_is_around_it_does_not_turn() {
+    let pulled = moved(&moved(&session(classic()), "p1", [0.5, 0.9, 0.0]), "p3", [0.9, 0.0, 0.0]);
+    let locked = Session { points: pulled.points.with_locked(&["p3".into()]).unwrap(), ..pulled.clone() };
+    let plain = Session {
+        points: locked
+            .points
+            .with_targets(&{
+                let mut q = pulled.points.targets();
+                q[6..9].copy_from_slice(&CORNERS[2]);
+                q
+            })
+            .unwrap()
+            .with_locked(&[])
+            .unwrap(),
+        ..pulled
+    };
+    let off = |session: &Session| {
+        let (place, map) = held(session, CORNERS[2]);
+        let from_identity =
+            map.iter().enumerate().map(|(at, e)| (e - f64::from(u8::from(at % 4 == 0))).powi(2));
+        (place, from_identity.sum::<f64>().sqrt())
+    };
+    let ((held_at, held_by), (_, free_by)) = (off(&locked), off(&plain));
+    assert!(held_at.iter().zip(CORNERS[2]).all(|(a, b)| (a - b).abs() < 1e-6), "{held_at:?}");
+    assert!(held_by < 1e-3 && free_by > 0.05, "{held_by} {free_by}");
+    let map = fitted(&locked);
+    let report = map.report(&map.aim().unwrap(), None).unwrap();
+    assert_eq!(report.control_points[2].moved, 0.0);
+    assert!(
+        report.warnings[0].contains("the targets and rotations of 'p3' are not used"),
+        "{:?}",
+        report.warnings
+    );
+}

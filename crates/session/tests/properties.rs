@@ -184,14 +184,17 @@ proptest! {
 
     #[test]
     fn csv_keeps_names_and_numbers_or_is_refused(session in sessions()) {
-        let oriented = session.points.iter().any(|point| point.orientation.is_some());
+        let more = |point: &ControlPoint| point.orientation.is_some() || point.group.is_some() || point.locked;
+        let more = session.points.iter().any(more);
         match session.to_csv() {
             Err(error) => {
-                prop_assert!(oriented);
-                prop_assert_eq!(error.message, "a CSV file holds no rotations: write a file that ends in .json");
+                prop_assert!(more);
+                let what = error.message.strip_prefix("a CSV file holds no ").unwrap();
+                let what = what.strip_suffix(": write a file that ends in .json").unwrap();
+                prop_assert!(["rotations", "groups", "locks"].contains(&what), "{}", what);
             }
             Ok(text) => {
-                prop_assert!(!oriented);
+                prop_assert!(!more);
                 // 9999 in every coordinate and names with blanks around them are the format's own.
                 let again = read(text.as_bytes(), "a.csv").unwrap().session.points;
                 for (again, point) in again.iter().zip(session.points.iter()) {

@@ -1,7 +1,7 @@
 //! Control points that arrive. The main thread has one of these for each frame of a drag; workers have it in their map.
 
 use js_sys::Float64Array;
-use neuralmls_core::Pose;
+use neuralmls_session::Posed;
 use wasm_bindgen::prelude::*;
 
 use crate::refused;
@@ -39,22 +39,31 @@ impl Handles {
         Float64Array::from(&self.core.squares()[..])
     }
 
-    /// Where to aim for the targets `q` (m x dim), oriented by `orientations` (m x dim x dim, NaN for those that are not; undefined: none is):
-    /// m x dim numbers; then the map that fits all control points with equal weights, from `q` as they are aimed at: its rotation (9), its
-    /// scale, its linear map (9), which the shader falls back on (dim x dim each).
+    /// Where to aim for the targets `q` (m x dim), oriented by `orientations` (m x dim x dim, NaN for those that are not; undefined: none is),
+    /// but for what the session holds: m x dim numbers; then the map that fits all control points with equal weights, from `q` as they are
+    /// aimed at: its rotation (9), its scale, its linear map (9), which the shader falls back on (dim x dim each); then the orientations, as
+    /// groups and locks leave them.
     ///
     /// # Errors
     /// Where `q` does not fit.
     pub fn aim(&self, q: &[f64], orientations: Option<Vec<f64>>) -> Result<Float64Array, JsError> {
-        let pose = Pose { q, orientations: orientations.as_deref() };
-        let aim = self.session.aim(&self.core, pose).map_err(refused)?;
-        let anchor = self.core.anchor(&aim.targets, pose.orientations).map_err(refused)?;
+        let (points, transform) = (&self.session.points, self.session.settings.transform);
+        let (dim, m) = (points.dim(), points.len());
+        let fits = |numbers: &[f64], each: usize| numbers.len() == m * each;
+        if !fits(q, dim) || !orientations.as_deref().is_none_or(|all| fits(all, dim * dim)) {
+            return Err(refused(format!("expected targets and orientations of {m} control points")));
+        }
+        let posed = points.hold(Posed { targets: q.to_vec(), orientations }, transform);
+        let aim = self.session.aim(&self.core, posed.pose()).map_err(refused)?;
+        let anchor = self.core.anchor(&aim.targets, posed.orientations.as_deref()).map_err(refused)?;
+        let orientations = posed.orientations.unwrap_or_else(|| vec![f64::NAN; m * dim * dim]);
         let numbers: Vec<f64> = aim
             .targets
             .into_iter()
             .chain(anchor.rotation)
             .chain([anchor.scale])
             .chain(anchor.linear)
+            .chain(orientations)
             .collect();
         Ok(Float64Array::from(&numbers[..]))
     }

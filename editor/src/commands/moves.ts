@@ -2,7 +2,7 @@
 
 import { mirrorOrientation, mirrorVector, twinOf } from "../model/mirror.ts";
 import { type Orientation, type Quaternion, rotatedBy, sameOrientation } from "../model/orientation.ts";
-import { type ControlPoint, find, type Moves, type PointId, type Session } from "../model/session.ts";
+import { type ControlPoint, find, type Moves, piece, type PointId, type Session, stays } from "../model/session.ts";
 import { add, equal, subtract, type Vec3 } from "../model/vec3.ts";
 import type { Command } from "./history.ts";
 import { change } from "./points.ts";
@@ -11,7 +11,7 @@ import { change } from "./points.ts";
 export function moveSelected(session: Session, moves: Moves, to: (place: Vec3) => Vec3): Session {
   const axis = session.settings.mirror;
   const led = leading(session);
-  let next = change(session, led, (point) => movedTo(point, moves, to(point[moves])));
+  let next = change(session, led, (point) => movedTo(session, point, moves, to(point[moves])));
   if (axis === null) return next;
   for (const id of led) {
     const [twin, before, after] = [twinOf(session, id), find(session, id), find(next, id)];
@@ -22,7 +22,7 @@ export function moveSelected(session: Session, moves: Moves, to: (place: Vec3) =
         moves === "target" ? subtract(after.target, after.position) : subtract(after.position, before.position),
         axis,
       );
-      return movedTo(point, moves, add(point.position, by));
+      return movedTo(session, point, moves, add(point.position, by));
     });
   }
   return next;
@@ -49,22 +49,22 @@ export function rotateSelected(session: Session, by: Quaternion): Session {
   let next = session;
   for (const id of leading(session)) {
     const before = find(session, id);
-    if (!before || before.locked || !(alone || before.orientation)) continue;
+    if (!before || stays(session, before) || !(alone || before.orientation)) continue;
     const orientation = rotatedBy(before.orientation, by);
-    next = change(next, [id], (point) => orientedTo(point, orientation));
+    next = change(next, [id], (point) => orientedTo(session, point, orientation));
     const twin = axis === null ? undefined : twinOf(session, id);
     if (axis === null || twin === undefined) continue;
-    next = change(next, [twin], (point) => orientedTo(point, mirrorOrientation(orientation, axis)));
+    next = change(next, [twin], (point) => orientedTo(session, point, mirrorOrientation(orientation, axis)));
   }
   return next;
 }
 
-function orientedTo(point: ControlPoint, orientation: Orientation): ControlPoint {
-  return point.locked || sameOrientation(point.orientation, orientation) ? point : { ...point, orientation };
+function orientedTo(session: Session, point: ControlPoint, orientation: Orientation): ControlPoint {
+  return stays(session, point) || sameOrientation(point.orientation, orientation) ? point : { ...point, orientation };
 }
 
-function movedTo(point: ControlPoint, moves: Moves, place: Vec3): ControlPoint {
-  if (point.locked || equal(point[moves], place)) return point;
+function movedTo(session: Session, point: ControlPoint, moves: Moves, place: Vec3): ControlPoint {
+  if (equal(point[moves], place) || stays(session, point)) return point;
   if (moves === "target") return { ...point, target: place };
   // Its displacement stays as it is.
   return { ...point, position: place, target: add(point.target, subtract(place, point.position)) };
@@ -79,7 +79,7 @@ export function nudge(moves: Moves, by: Vec3): Command {
   };
 }
 
-/** Puts the target (or place) of one control point at a place that was typed. */
+/** Puts the target (or place) of one control point at a place that was typed; its group goes along. */
 export function put(id: PointId, moves: Moves, place: Vec3): Command {
   return {
     label: "Move",
@@ -88,7 +88,12 @@ export function put(id: PointId, moves: Moves, place: Vec3): Command {
       if (moves === "position" && session.points.some((other) => other.id !== id && equal(other.position, place))) {
         return session;
       }
-      const moved = moveSelected({ ...session, selection: [id] }, moves, () => place);
+      const point = find(session, id);
+      if (!point) return session;
+      const selection = piece(session, point).map((one) => one.id);
+      const by = subtract(place, point[moves]);
+      // Itself to the last bit.
+      const moved = moveSelected({ ...session, selection }, moves, (from) => (from === point[moves] ? place : add(from, by)));
       return moved.points === session.points ? session : { ...moved, selection: session.selection };
     },
   };
@@ -102,7 +107,7 @@ export function resetTargets(which: "selected" | "all"): Command {
       const ids = which === "all" ? session.points.map((point) => point.id) : session.selection;
       return change(session, ids, (point) => {
         const { orientation, ...plain } = point;
-        return movedTo(orientation && !point.locked ? plain : point, "target", point.position);
+        return movedTo(session, orientation && !stays(session, point) ? plain : point, "target", point.position);
       });
     },
   };

@@ -1,4 +1,4 @@
-/** Commands on control points: add, remove, name, lock. */
+/** Commands on control points: add, remove, name, lock, group. */
 
 import { isOnPlane, mirrorPoint, mirrorVector } from "../model/mirror.ts";
 import { type ControlPoint, find, freeNames, isMoved, nextId, type PointId, type Session } from "../model/session.ts";
@@ -41,12 +41,12 @@ export function addPoints(places: readonly Place[]): Command {
   return { label: `Place ${places.length} control points`, apply: (session) => withPoints(session, places) };
 }
 
-/** The same, but control points that are neither moved nor locked give way to them. */
+/** The same, but control points that are neither moved nor held give way to them. */
 export function placeAnew(places: readonly Place[]): Command {
   return {
     label: `Place ${places.length} control points`,
     apply(session) {
-      const points = session.points.filter((point) => point.locked || isMoved(point));
+      const points = session.points.filter((point) => point.locked || point.group !== undefined || isMoved(point));
       const stays = new Set(points.map((point) => point.id));
       const pairs = session.pairs.filter(([a, b]) => stays.has(a) && stays.has(b));
       return withPoints({ ...session, points, selection: [], pairs }, places);
@@ -98,6 +98,37 @@ export function toggleLock(ids: readonly PointId[]): Command {
       return change(session, ids, (point) => (point.locked === locked ? point : { ...point, locked }));
     },
   };
+}
+
+/** Makes one group of control points, whichever groups they were in. */
+export function group(ids: readonly PointId[]): Command {
+  return {
+    label: "Group",
+    apply(session) {
+      if (ids.length < 2) return session;
+      const name = freeGroup(session);
+      return change(session, ids, (point) => ({ ...point, group: name }));
+    },
+  };
+}
+
+/** Takes control points out of their groups. */
+export function ungroup(ids: readonly PointId[]): Command {
+  return {
+    label: "Ungroup",
+    apply: (session) => change(session, ids, (point) => {
+      const { group: before, ...free } = point;
+      return before === undefined ? point : free;
+    }),
+  };
+}
+
+/** The first of group 1, group 2 ... that is free. */
+function freeGroup(session: Session): string {
+  const taken = new Set(session.points.map((point) => point.group));
+  let i = 1;
+  while (taken.has(`group ${i}`)) i++;
+  return `group ${i}`;
 }
 
 /** Replaces some control points; the same session where none of them changes. */

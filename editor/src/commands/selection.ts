@@ -1,13 +1,13 @@
 /** Commands that select. */
 
-import type { PointId, Session } from "../model/session.ts";
+import { find, piece, type PointId, type Session } from "../model/session.ts";
 import type { Command } from "./history.ts";
 
 /** How a new selection goes together with the one that is there. */
 export type Mode = "replace" | "add" | "toggle";
 
 export function select(ids: readonly PointId[], mode: Mode = "replace"): Command {
-  return { label: "Select", apply: (session) => withSelection(session, combined(session.selection, ids, mode)) };
+  return { label: "Select", apply: (session) => withSelection(session, combined(session.selection, withGroups(session, ids), mode)) };
 }
 
 export function selectAll(): Command {
@@ -27,9 +27,18 @@ export function selectNext(by: 1 | -1): Command {
       const last = session.selection.at(-1);
       const at = session.points.findIndex((point) => point.id === last);
       const next = at < 0 ? (by === 1 ? 0 : count - 1) : (at + by + count) % count;
-      return withSelection(session, [session.points[next].id]);
+      return withSelection(session, withGroups(session, [session.points[next].id]));
     },
   };
+}
+
+/** A group is selected whole; what was asked for leads. */
+function withGroups(session: Session, ids: readonly PointId[]): PointId[] {
+  const others = ids.flatMap((id) => {
+    const point = find(session, id);
+    return point ? piece(session, point).map((one) => one.id) : [];
+  });
+  return [...new Set(others.filter((id) => !ids.includes(id))), ...ids];
 }
 
 function combined(now: readonly PointId[], ids: readonly PointId[], mode: Mode): PointId[] {

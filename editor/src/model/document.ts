@@ -29,6 +29,7 @@ interface PointEntry {
   weight?: number;
   locked?: boolean;
   mirror_of?: string;
+  group?: string;
 }
 
 export interface SettingsEntry {
@@ -50,12 +51,13 @@ export function toDocument(session: Session, dim: 1 | 2 | 3): SessionDocument {
     format: "neuralmls-control-points",
     version: 2,
     control_points: points.map((point) => {
-      const { name, position, target, orientation, weight, locked } = point;
+      const { name, position, target, orientation, weight, locked, group } = point;
       const { rotation, ...others } = (point.others ?? {}) as Partial<PointEntry>;
       const twin = twinOf.get(point.id);
       const places = { position: position.slice(0, dim), target: target.slice(0, dim) };
       const carried = orientation && orientationKeys(orientation, rotation, dim);
-      return { ...others, name, ...places, ...carried, weight, locked, ...(twin !== undefined && { mirror_of: twin }) };
+      const bonds = { ...(twin !== undefined && { mirror_of: twin }), ...(group !== undefined && { group }) };
+      return { ...others, name, ...places, ...carried, weight, locked, ...bonds };
     }),
     settings: settingsEntry(settings),
     ...(frame && { frame }),
@@ -97,7 +99,7 @@ function editorOf({ editor }: Pick<SessionDocument, "editor">): { mirror?: unkno
 }
 
 function pointFrom(entry: PointEntry, i: number): ControlPoint {
-  const { name, position, target, rotation, scale, weight, locked, mirror_of: _, ...others } = entry;
+  const { name, position, target, rotation, scale, weight, locked, mirror_of: _, group, ...others } = entry;
   const { axis, degrees, ...unknown } = rotation ?? { degrees: 0 };
   const orientation: Orientation | undefined =
     rotation || scale !== undefined ? { axis: pad(axis ?? [0, 0, 1]), degrees, scale: scale ?? 1 } : undefined;
@@ -110,6 +112,7 @@ function pointFrom(entry: PointEntry, i: number): ControlPoint {
     ...(orientation && { orientation }),
     weight: weight ?? 1,
     locked: locked ?? false,
+    ...(group !== undefined && { group }),
     ...(Object.keys(others).length > 0 && { others }),
   };
 }

@@ -1,6 +1,10 @@
 /** Control points that arrive: where to aim so that they do, by the core (crates/core/src/aim). */
 
+import type { ControlPoint } from "./session.ts";
 import type { Settings } from "./settings.ts";
+
+/** What of a control point says with what it moves, and whether. */
+export type Hold = Pick<ControlPoint, "group" | "locked">;
 
 /** Where to aim, and what local maps follow where the control points around them leave something open. Overwritten by the next. */
 export interface Aim {
@@ -10,16 +14,23 @@ export interface Aim {
   readonly rotation: Float32Array;
   readonly scale: number;
   readonly linear: Float32Array;
+  /** Of each control point its rotation times its scale, m x 9, NaN for one that has none: its own, or its group's. */
+  readonly orientations: Float64Array;
 }
 
 export interface Handles {
   /** The square of each control point's distance to the nearest other one, in file units: what an oriented one counts by. */
   readonly squares: Float64Array;
   /**
-   * For the targets (m x 3 in file units) and orientations (m x 9, as `orientationsOf` has them) of the control points. Computed at
-   * once: 0.1 to 0.3 ms for a dozen control points.
+   * For the targets (m x 3 in file units) and orientations (m x 9, as `orientationsOf` has them) of the control points, and what holds
+   * them (undefined: one that is not there any more). Computed at once: 0.1 to 0.3 ms for a dozen control points.
    */
-  aim(targets: Float64Array, orientations: Float64Array | undefined, settings: Settings): Aim;
+  aim(
+    targets: Float64Array,
+    orientations: Float64Array | undefined,
+    settings: Settings,
+    holds: readonly (Hold | undefined)[],
+  ): Aim;
   /** Gives the memory back. */
   free(): void;
 }

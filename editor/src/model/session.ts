@@ -16,9 +16,11 @@ export interface ControlPoint {
   readonly orientation?: Orientation;
   /** How closely it is to be met, 0 to 1, of what the handles are set to. */
   readonly weight: number;
-  /** It stays where it is: moves pass it over. */
+  /** It stays as it is at rest, and holds what is around it; moves pass it over. */
   readonly locked: boolean;
-  /** What a file has of it besides: its group, and keys of other programs. Kept. */
+  /** Control points of one group move as one piece; one of them that is locked keeps all. */
+  readonly group?: string;
+  /** What a file has of it besides: keys of other programs. Kept. */
   readonly others?: object;
 }
 
@@ -59,6 +61,14 @@ export function leader(session: Session): ControlPoint | undefined {
   const last = session.selection.at(-1);
   return last === undefined ? undefined : find(session, last);
 }
+
+/** The others of a control point's group, and itself. */
+export function piece(session: Session, { id, group }: ControlPoint): readonly ControlPoint[] {
+  return session.points.filter((point) => point.id === id || (group !== undefined && point.group === group));
+}
+
+/** Whether it stays at rest. */
+export const stays = (session: Session, point: ControlPoint): boolean => piece(session, point).some(({ locked }) => locked);
 
 export function nextId(session: Session): PointId {
   return session.points.reduce((most, point) => Math.max(most, point.id), 0) + 1;

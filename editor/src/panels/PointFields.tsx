@@ -1,8 +1,8 @@
 import { useEffect, useState } from "preact/hooks";
-import { pair, put, rename, resetTargets, toggleLock, unpair } from "../commands/index.ts";
+import { group, pair, put, rename, resetTargets, toggleLock, ungroup, unpair } from "../commands/index.ts";
 import { twinOf } from "../model/mirror.ts";
 import type { Orientation } from "../model/orientation.ts";
-import { type ControlPoint, isMoved, leader, selected } from "../model/session.ts";
+import { type ControlPoint, isMoved, leader, selected, stays } from "../model/session.ts";
 import { AXES, type Vec3 } from "../model/vec3.ts";
 import { Button, NumberField } from "./controls.tsx";
 import { useApp, useAppState } from "./useStore.ts";
@@ -26,7 +26,7 @@ export function PointFields() {
           label={`${title} ${axis}`}
           value={point[which][at]}
           shown={point[which][at].toFixed(digits)}
-          disabled={point.locked}
+          disabled={stays(session, point)}
           onChange={(value) => app.do(put(point.id, which, point[which].map((c, k) => (k === at ? value : c)) as unknown as Vec3))}
         />
       ))}
@@ -36,15 +36,31 @@ export function PointFields() {
     <div class="point-fields">
       <div class="row">
         <NameField point={point} />
-        <Button quiet icon={point.locked ? "lock" : "unlock"} label={point.locked ? "Free" : "Lock: it stays where it is"} hint="L" pressed={point.locked} onClick={() => app.do(toggleLock(session.selection))} />
+        <Button quiet icon={point.locked ? "lock" : "unlock"} label={point.locked ? "Free" : "Lock: it stays at rest, and holds what is around it"} hint="L" pressed={point.locked} onClick={() => app.do(toggleLock(session.selection))} />
         <Button quiet icon="reset" label="Reset the target" hint="0" disabled={!all.some(isMoved)} onClick={() => app.do(resetTargets("selected"))} />
       </div>
       {row("target", "Target")}
       {row("position", "At rest")}
       {point.orientation && <p class="hint">{orientationText(point.orientation)}</p>}
       {session.settings.mirror && <Twin point={point} />}
-      {all.length > 1 && <p class="hint">{all.length} are selected and move together.</p>}
+      {all.length > 1 && <Groups all={all} />}
     </div>
+  );
+}
+
+/** Several that are selected: one group, or to be made one. */
+function Groups({ all }: { all: readonly ControlPoint[] }) {
+  const app = useApp();
+  const ids = all.map(({ id }) => id);
+  const grouped = all[0].group !== undefined && all.every((point) => point.group === all[0].group);
+  return (
+    <>
+      <p class="hint">{all.length} are selected and move together{grouped ? `, as one piece: ${all[0].group}` : ""}.</p>
+      <div class="row">
+        <Button icon="group" label="Group" hint="G" disabled={grouped} onClick={() => app.do(group(ids))} />
+        <Button label="Ungroup" hint="Shift G" disabled={!all.some((point) => point.group !== undefined)} onClick={() => app.do(ungroup(ids))} />
+      </div>
+    </>
   );
 }
 

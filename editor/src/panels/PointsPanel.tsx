@@ -99,6 +99,7 @@ function PointList({ points }: { points: readonly ControlPoint[] }) {
               <i class="swatch" style={{ background: cssColour(i) }} />
               <span class="name" title={point.name}>{point.name}</span>
               {twin !== null && twin !== undefined && <small title={`Its twin: ${names.get(twin)}`}>↔ <span>{names.get(twin)}</span></small>}
+              {point.group !== undefined && <span class="piece" title={`Moves as one piece with all of ${point.group}`}><Icon name="group" /></span>}
               {point.locked && <Icon name="lock" />}
               <span class={`distance ${short_ ? "short" : ""}`} title={away === undefined ? "" : `It ends ${distance(away, size)} from its target`}>
                 {isMoved(point) && away !== undefined ? share(away / size) : ""}

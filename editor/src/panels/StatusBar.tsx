@@ -36,7 +36,7 @@ export function StatusBar() {
   );
 }
 
-const WORDS = { misses: "missed targets", folds: "folds", torn: "tears", ungoverned: "a part without a control point" } as const;
+const WORDS = { misses: "missed targets", stiff: "a stiff transform", folds: "folds", torn: "tears", ungoverned: "a part without a control point" } as const;
 
 function textOf(fit: FitState): string {
   switch (fit.status) {

@@ -1,7 +1,7 @@
 /** What the keys and buttons that need more than a command do; one list, which the help shows too. */
 
 import type { App } from "../app/app.ts";
-import { nudge, removeSelected, resetTargets, select, selectAll, selectNext, toggleLock, unpair, pair } from "../commands/index.ts";
+import { group, nudge, removeSelected, resetTargets, select, selectAll, selectNext, toggleLock, ungroup, unpair, pair } from "../commands/index.ts";
 import { scale, type Vec3 } from "../model/vec3.ts";
 
 export interface Shortcut {
@@ -50,6 +50,7 @@ export const SHORTCUTS: readonly Shortcut[] = [
   { keys: "N", label: "Next control point (Shift: previous)", group: "Edit", matches: plain("n"), run: (app, e) => app.do(selectNext(e.shiftKey ? -1 : 1)) },
   { keys: "Delete", label: "Delete the selected control points", group: "Edit", matches: (e) => e.key === "Delete" || e.key === "Backspace", run: (app) => app.do(removeSelected()) },
   { keys: "L", label: "Lock or free", group: "Edit", matches: plain("l"), run: (app) => app.do(toggleLock(app.history.session.selection)) },
+  { keys: "G", label: "Group the selected control points (Shift: ungroup)", group: "Edit", matches: (e) => e.key.toLowerCase() === "g" && !control(e) && !e.altKey, run: (app, e) => app.do((e.shiftKey ? ungroup : group)(app.history.session.selection)) },
   { keys: "0", label: "Reset the selected targets", group: "Edit", matches: plain("0"), run: (app) => app.do(resetTargets("selected")) },
   { keys: "P", label: "Make the two selected twins, or part them", group: "Edit", matches: plain("p"), run: (app) => togglePair(app) },
   { keys: "A", label: "Clicks on the surface add control points, or not", group: "Edit", matches: plain("a"), run: (app) => app.setView({ adding: !app.store.value.view.adding }) },

@@ -1,6 +1,6 @@
 /** Control points that carry a rotation, as `crates/core/src/mls/oriented.rs` has them. */
 
-import { type Orientation, type Rotation, rotationOf } from "../model/orientation.ts";
+import type { Rotation } from "../model/orientation.ts";
 
 export interface OrientedPoint {
   /** Which one. */
@@ -12,11 +12,18 @@ export interface OrientedPoint {
   square: number;
 }
 
-/** The oriented ones of control points; `squares` in units of which the shader's are `unit` long. */
-export function orientedPoints(orientations: readonly (Orientation | undefined)[], squares: Float64Array, unit: number): OrientedPoint[] {
-  return orientations.flatMap((orientation, index) => {
-    if (!orientation) return [];
-    return [{ index, rotation: rotationOf(orientation), scale: orientation.scale, square: squares[index] / unit ** 2 }];
+/**
+ * The oriented ones of control points: `orientations` as the core has them, m x 9; `squares` in units of which the shader's are
+ * `unit` long.
+ */
+export function orientedPoints(orientations: Float64Array, squares: Float64Array, unit: number): OrientedPoint[] {
+  return [...squares].flatMap((square, index) => {
+    const scaled = orientations.subarray(9 * index, 9 * index + 9);
+    if (Number.isNaN(scaled[0])) return [];
+    // Each row has its own: beyond the dimension of the file there is none.
+    const scales = [0, 3, 6].map((at) => Math.hypot(scaled[at], scaled[at + 1], scaled[at + 2]));
+    const rotation = [...scaled].map((e, at) => e / scales[Math.floor(at / 3)]) as Rotation;
+    return [{ index, rotation, scale: scales[0], square: square / unit ** 2 }];
   });
 }
 

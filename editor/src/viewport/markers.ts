@@ -26,6 +26,7 @@ export interface Marker {
   selected: boolean;
   twin: boolean;
   locked: boolean;
+  grouped: boolean;
 }
 
 const VERTEX = /* glsl */ `
@@ -40,18 +41,20 @@ void main() {
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
   // Drawn a little in front of the surface that it lies on.
   gl_Position.z -= 0.004 * gl_Position.w * clamp(1.0 - gl_Position.z / gl_Position.w, 0.0, 1.0);
-  gl_PointSize = pixels * (state >= 1.0 ? 1.25 : 1.0);
+  gl_PointSize = pixels * (mod(state, 8.0) >= 1.0 ? 1.25 : 1.0);
 }
 `;
 
-/** state: 0 plain, 1 selected, 2 twin of a selected one; + 4 locked. */
+/** state: 0 plain, 1 selected, 2 twin of a selected one; + 4 locked, a square; + 8 grouped, with a dot in it. */
 const FRAGMENT = /* glsl */ `
 uniform float opacity;
 varying vec3 vTone;
 varying float vState;
 void main() {
-  bool locked = vState >= 3.5;
-  float state = locked ? vState - 4.0 : vState;
+  bool grouped = vState >= 7.5;
+  float state = grouped ? vState - 8.0 : vState;
+  bool locked = state >= 3.5;
+  state = locked ? state - 4.0 : state;
   vec2 c = 2.0 * gl_PointCoord - 1.0;
   float r = locked ? max(abs(c.x), abs(c.y)) * 1.15 : length(c);
   float edge = fwidth(r);
@@ -60,7 +63,9 @@ void main() {
   float core = 1.0 - smoothstep(0.60 - edge, 0.60 + edge, r);
   vec3 ring = state > 0.5 && state < 1.5 ? vec3(1.0, 0.26, 0.0) : state > 1.5 ? vec3(0.08, 0.5, 1.0) : vec3(1.0);
   float shadow = smoothstep(0.80, 0.94, r);
-  gl_FragColor = vec4(mix(mix(ring, vec3(0.04, 0.05, 0.07), 0.75 * shadow), vTone, core), disc * opacity);
+  vec3 tone = mix(mix(ring, vec3(0.04, 0.05, 0.07), 0.75 * shadow), vTone, core);
+  float dot = grouped ? 1.0 - smoothstep(0.26 - edge, 0.26 + edge, r) : 0.0;
+  gl_FragColor = vec4(mix(tone, vec3(1.0), dot), disc * opacity);
   #include <colorspace_fragment>
 }
 `;
@@ -121,7 +126,7 @@ export class Markers {
       write(this.#tone, 6 * i + 3, r);
       write(this.#tone, 6 * i + 4, g);
       write(this.#tone, 6 * i + 5, b);
-      write(this.#state, 2 * i + 1, (marker.selected ? 1 : marker.twin ? 2 : 0) + (marker.locked ? 4 : 0));
+      write(this.#state, 2 * i + 1, (marker.selected ? 1 : marker.twin ? 2 : 0) + (marker.locked ? 4 : 0) + (marker.grouped ? 8 : 0));
     });
   }
 

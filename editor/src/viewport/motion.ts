@@ -1,6 +1,6 @@
 /** What the GPU is told of a frame: how the control points that weights were computed for are moved. */
 
-import type { Handles } from "../model/handles.ts";
+import type { Handles, Hold } from "../model/handles.ts";
 import { type Orientation, orientationsOf } from "../model/orientation.ts";
 import { find, leader, type PointId, type Session } from "../model/session.ts";
 import type { Colouring } from "../model/view.ts";
@@ -28,6 +28,7 @@ export class Motions {
   readonly #q: Float64Array;
   readonly #targets: Float64Array;
   readonly #orientations: (Orientation | undefined)[];
+  readonly #holds: (Hold | undefined)[];
 
   constructor(bound: Bound, space: Space) {
     [this.bound, this.#space] = [bound, space];
@@ -35,29 +36,31 @@ export class Motions {
     this.#q = new Float64Array(bound.p.length);
     this.#targets = new Float64Array(bound.p.length);
     this.#orientations = new Array<Orientation | undefined>(bound.ids.length);
+    this.#holds = new Array<Hold | undefined>(bound.ids.length);
   }
 
   /** Weights that are still being fitted: what was bound last moves as far as its control points are still there. */
   of(session: Session, look: { atRest: boolean; colouring: Colouring }): GpuMotion {
     const { ids, p, handles } = this.bound;
     const { points, settings } = session;
-    const [targets, orientations] = [this.#targets, this.#orientations];
+    const [targets, orientations, holds] = [this.#targets, this.#orientations, this.#holds];
     targets.set(p);
     orientations.fill(undefined);
+    holds.fill(undefined);
     for (let i = 0; i < ids.length && !look.atRest; i++) {
       const point = points[i]?.id === ids[i] ? points[i] : find(session, ids[i]);
       if (!point) continue;
-      orientations[i] = point.orientation;
+      [orientations[i], holds[i]] = [point.orientation, point];
       for (let c = 0; c < 3; c++) {
         // Bit for bit where it is not moved.
         if (point.target[c] !== point.position[c]) targets[3 * i + c] += point.target[c] - point.position[c];
       }
     }
-    const aim = handles.aim(targets, orientationsOf(orientations), settings);
+    const aim = handles.aim(targets, orientationsOf(orientations), settings, holds);
     return {
       p: this.#p,
       q: this.#space.allToView(aim.targets, this.#q),
-      oriented: orientedPoints(orientations, handles.squares, this.#space.box.half),
+      oriented: orientedPoints(aim.orientations, handles.squares, this.#space.box.half),
       anchor: aim,
       transform: settings.transform,
       temperature: settings.temperature,

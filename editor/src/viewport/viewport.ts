@@ -5,7 +5,7 @@ import type { SerializedBVH } from "three-mesh-bvh";
 import { addPoint, type Box, type History, moveSelected, rotateSelected, select } from "../commands/index.ts";
 import type { Constants } from "../model/handles.ts";
 import { twinOf } from "../model/mirror.ts";
-import { selected, type Session } from "../model/session.ts";
+import { type ControlPoint, type Moves, selected, type Session, stays } from "../model/session.ts";
 import type { Slot } from "../model/slot.ts";
 import type { Vec3 } from "../model/vec3.ts";
 import type { Tool, View } from "../model/view.ts";
@@ -52,7 +52,7 @@ export class Viewport {
       end: () => history.commit(),
     });
     this.#pointer = new Pointer(this.stage, this.#gizmo, {
-      markers: () => history.session.points.map((point) => this.#space.toView(point[this.#view.moves])),
+      markers: () => history.session.points.map((point) => this.#space.toView(placeOf(history.session, point, this.#view.moves))),
       boxes: () => this.#view.boxes,
       isSelected: (marker) => history.session.selection.includes(history.session.points[marker].id),
       meet: (ray, at, through) => this.#meet(ray, at, through),
@@ -234,17 +234,18 @@ export class Viewport {
     const shown = this.#view.before ? "position" : this.#view.moves;
     return session.points.map((point, number) => ({
       rest: this.#space.toView(point.position),
-      place: this.#space.toView(point[shown]),
+      place: this.#space.toView(placeOf(session, point, shown)),
       number,
       selected: chosen.has(point.id),
       twin: twins.has(point.id),
       locked: point.locked,
+      grouped: point.group !== undefined,
     }));
   }
 
   /** The middle of the selected control points that can be moved. */
   #pivot(session: Session): Vector3 | undefined {
-    const free = selected(session).filter((point) => !point.locked);
+    const free = selected(session).filter((point) => !stays(session, point));
     if (free.length === 0 || this.#view.before) return undefined;
     const sum = new Vector3();
     for (const point of free) sum.add(this.#space.toView(point[this.#view.moves]));
@@ -275,3 +276,6 @@ export class Viewport {
     this.#sides.show(right ? "comparison" : "main");
   }
 }
+
+/** Where a control point is shown: what is held stays at rest. */
+const placeOf = (session: Session, point: ControlPoint, moves: Moves): Vec3 => (stays(session, point) ? point.position : point[moves]);

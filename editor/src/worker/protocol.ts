@@ -102,7 +102,7 @@ export interface Deformed {
 
 /** One thing that is likely bad about a deformation (crates/session/src/advice.rs). */
 export interface Advice {
-  kind: "misses" | "folds" | "torn" | "ungoverned";
+  kind: "misses" | "stiff" | "folds" | "torn" | "ungoverned";
   /** What, where, and what would help. */
   sentence: string;
   /** The control points that it is about, by their numbers, the worst first. */

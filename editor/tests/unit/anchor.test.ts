@@ -4,6 +4,7 @@ import { describe, expect, it } from "vitest";
 import { type SessionDocument, toDocument } from "../../src/model/document.ts";
 import type { Aim } from "../../src/model/handles.ts";
 import { type Orientation, orientationsOf, rotationOf } from "../../src/model/orientation.ts";
+import { orientedPoints } from "../../src/shader/oriented.ts";
 import type { Settings } from "../../src/model/settings.ts";
 import { pointAt } from "../../src/model/vec3.ts";
 import { createHandles } from "../../src/worker/handles.ts";
@@ -41,7 +42,7 @@ function anchor(p: readonly number[], q: readonly number[], oriented: readonly (
   const m = p.length / 3;
   const own = Float32Array.from({ length: m * m }, (_, at) => (at % (m + 1) === 0 ? 6 : 0));
   const handles = createHandles(documentOf(p, dim), dim, own);
-  const aim = handles.aim(Float64Array.from(q), orientationsOf(oriented), soft);
+  const aim = handles.aim(Float64Array.from(q), orientationsOf(oriented), soft, []);
   handles.free();
   return aim;
 }
@@ -122,7 +123,7 @@ describe("handles", () => {
   it("that are soft aim at their targets; others past them, and a change of the settings is heard", () => {
     const own = Float32Array.from({ length: 16 }, (_, at) => (at % 5 === 0 ? 3 : 0));
     const handles = createHandles(documentOf(p, 3), 3, own);
-    const aim = (settings: Settings) => [...handles.aim(Float64Array.from(q), undefined, settings).targets];
+    const aim = (settings: Settings) => [...handles.aim(Float64Array.from(q), undefined, settings, []).targets];
     const [auto, near, half] = [aim(defaults), aim(soft), aim({ ...defaults, handles: 0.5 })];
     expect(near).toEqual(q);
     const farthest = (found: number[]) => Math.max(...found.map((c, at) => Math.abs(c - q[at])));
@@ -136,6 +137,37 @@ describe("handles", () => {
   it("know how far the nearest other one is", () => {
     const handles = createHandles(documentOf(p, 3), 3, new Float32Array(16));
     close(handles.squares, [1, 1, 4, 9]);
+    handles.free();
+  });
+});
+
+describe("what is held", () => {
+  const p = [0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 0, 0];
+  const own = Float32Array.from({ length: 16 }, (_, at) => (at % 5 === 0 ? 6 : 0));
+  const free = { locked: false };
+  const piece = { locked: false, group: "seat" };
+  const locked = { locked: true };
+
+  it("moves as one piece with its group, or stays; a change of it is heard", () => {
+    const handles = createHandles(documentOf(p, 3), 3, own);
+    // A quarter turn about z of what would also grow.
+    const q = Float64Array.of(0, 0, 0, 0, 2, 0, -2, 0, 0, 5, 3, 0);
+    const aim = (holds: readonly (typeof piece | typeof free)[]) => {
+      const { targets, orientations } = handles.aim(q, undefined, soft, holds);
+      return { targets: [...targets], orientations: [...orientations] };
+    };
+    const loose = aim([free, free, free, free]);
+    expect(loose.targets).toEqual([...q]);
+    expect(loose.orientations.every(Number.isNaN)).toBe(true);
+    const grouped = aim([piece, piece, piece, free]);
+    const distance = (i: number, k: number) => Math.hypot(...[0, 1, 2].map((c) => grouped.targets[3 * i + c] - grouped.targets[3 * k + c]));
+    close([distance(0, 1), distance(0, 2), distance(1, 2)], [1, 1, Math.SQRT2]);
+    for (const i of [0, 1, 2]) close(grouped.orientations.slice(9 * i, 9 * i + 9), [0, -1, 0, 1, 0, 0, 0, 0, 1]);
+    expect(grouped.targets.slice(9)).toEqual([5, 3, 0]);
+    const held = aim([free, free, free, locked]);
+    expect(held.targets).toEqual([...q.slice(0, 9), 5, 0, 0]);
+    expect(orientedPoints(Float64Array.from(held.orientations), handles.squares, 1).map(({ index }) => index)).toEqual([3]);
+    expect(aim([free, free, free, free])).toEqual(loose);
     handles.free();
   });
 });

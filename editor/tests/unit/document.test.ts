@@ -8,7 +8,7 @@ import { defaults, EMPTY_SESSION } from "./core.ts";
 
 const session: Session = {
   points: [
-    { id: 1, name: "seat", position: [0.1, 0.2, 1 / 3], target: [0.1, 0.2, 1 / 3], weight: 0.25, locked: true, others: { group: "legs", mine: [1] } },
+    { id: 1, name: "seat", position: [0.1, 0.2, 1 / 3], target: [0.1, 0.2, 1 / 3], weight: 0.25, locked: true, group: "legs", others: { mine: [1] } },
     { id: 2, name: 'a "b", é', position: [1e-300, -5e5, 0], target: [0.1 + 0.2, 2, 3], orientation: { axis: [1, -2, 0.5], degrees: 75, scale: 1.5 }, weight: 1, locked: false },
   ],
   selection: [],

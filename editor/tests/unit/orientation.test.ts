@@ -27,7 +27,7 @@ describe("an orientation", () => {
   });
 
   it("by nothing is nothing to the last bit", () => {
-    expect(orientedPoints([{ ...orientation, degrees: 0, scale: 1 }], Float64Array.of(1), 1).every(isStill)).toBe(true);
+    expect(orientedPoints(orientationsOf([{ ...orientation, degrees: 0, scale: 1 }])!, Float64Array.of(1), 1).every(isStill)).toBe(true);
   });
 
   it("rotated further is the product of both, whatever the angle", () => {

@@ -32,14 +32,14 @@ if TYPE_CHECKING:
     "offsets",
     metavar="NAME=DX,DY,DZ",
     multiple=True,
-    help="Move a target, from where the file has it; may be repeated.",
+    help="Move a target, or those of a group, from where the file has it; may be repeated.",
 )
 @click.option(
     "--turn",
     "turns",
     metavar="NAME=AXIS,DEGREES",
     multiple=True,
-    help="Turn a control point, and what is near it, about x, y, z or an axis of three numbers; may be repeated.",
+    help="Turn a control point, and what is near it, or a group; AXIS is x, y, z or three numbers. May be repeated.",
 )
 @click.option("--check", is_flag=True, help="Say where the result is likely bad, and what would help.")
 @options.json

@@ -19,6 +19,9 @@ use crate::weights::Weights;
 use anderson::Guess;
 
 mod anderson;
+mod left_out;
+
+pub use left_out::Stiff;
 
 /// A handle has arrived when it misses by less than this part of the targets' extent.
 const ARRIVED: f64 = 1e-11;

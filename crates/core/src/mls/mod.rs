@@ -12,11 +12,13 @@ mod global;
 pub(crate) mod matrix;
 mod moments;
 mod oriented;
+mod piece;
 mod rotation;
 mod similarity;
 mod transform;
 
 pub use affine::RIDGE;
+pub use piece::{piece, Piece};
 pub use rotation::{best_rotation, ANCHOR_WEIGHT};
 pub use transform::Transform;
 

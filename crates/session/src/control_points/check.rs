@@ -1,5 +1,7 @@
 //! Warnings of control points that a person may not have meant.
 
+use neuralmls_core::Transform;
+
 use super::fit::{self, Rest};
 use super::{axes, ControlPoints};
 use crate::error::Error;
@@ -81,7 +83,7 @@ impl ControlPoints {
 
     /// Three or more control points in space that only move, on a line or nearly so.
     fn on_a_line(&self) -> Option<String> {
-        let only_move = self.len() > 2 && self.iter().all(|point| point.orientation.is_none());
+        let only_move = self.len() > 2 && self.posed(Transform::Rigid).orientations.is_none();
         (self.dim() == 3 && only_move && fit::thickness(&self.sources()) < THIN).then(|| {
             "the control points are on a line, or nearly so: how far the shape turns about it is not determined, but by one \
              control point beside it, or one with a rotation"

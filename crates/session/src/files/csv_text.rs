@@ -11,8 +11,15 @@ pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 /// Names, positions and targets, every number with as many digits as it takes to read back the same double.
 pub(crate) fn csv_text(session: &Session) -> Result<String, Error> {
     let points = &session.points;
-    if points.iter().any(|point| point.orientation.is_some()) {
-        return Err(Error::file("a CSV file holds no rotations: write a file that ends in .json"));
+    for (what, any) in [
+        ("rotations", points.iter().any(|point| point.orientation.is_some())),
+        ("groups", points.iter().any(|point| point.group.is_some())),
+        ("locks", points.iter().any(|point| point.locked)),
+    ] {
+        if any {
+            let message = format!("a CSV file holds no {what}: write a file that ends in .json");
+            return Err(Error::file(message));
+        }
     }
     let axes = &AXES[..points.dim()];
     let mut out = format!("name,{},target_{}\n", axes.join(","), axes.join(",target_"));

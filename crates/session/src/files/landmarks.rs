@@ -40,11 +40,6 @@ impl Landmarks {
         self.list.push(point);
     }
 
-    /// The one that was pushed last, if it was not left out.
-    pub fn last(&mut self) -> Option<&mut ControlPoint> {
-        self.list.last_mut()
-    }
-
     /// One that was not placed.
     pub fn leave_out(&mut self, name: String, why: &str) {
         self.places.push(self.count());

@@ -80,9 +80,6 @@ fn push(landmarks: &mut Landmarks, point: &Map<String, Value>, place: &str) -> R
         }
     }
     landmarks.push(name, vector(point, "position", place, Some(3))?, None);
-    if let (Some(last), Some(true)) = (landmarks.last(), point.get("locked").and_then(Value::as_bool)) {
-        last.locked = true;
-    }
     Ok(())
 }
 
@@ -143,9 +140,6 @@ pub fn read_fiducials(text: &str) -> Result<Read, Error> {
             return Err(Error::file(format!("line {line}: expected numbers for x, y and z, found {found}")));
         };
         landmarks.push(name, position, None);
-        if let (Some(last), Some("1")) = (landmarks.last(), column("lock").map(cell)) {
-            last.locked = true;
-        }
     }
     finish(landmarks, Some(system))
 }

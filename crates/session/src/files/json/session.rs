@@ -10,6 +10,7 @@ use super::{editor, entry, FORMAT};
 use crate::control_points::{ControlPoint, ControlPoints};
 use crate::error::Error;
 use crate::session::{Bounds, Read, Session};
+use crate::text::names;
 
 /// What a file of an older version may hold as another program's keys, and means something in this one.
 const NEW_KEYS: [&str; 2] = ["settings", "frame"];
@@ -83,8 +84,28 @@ fn entries(list: &[Value], version: u8, notes: &mut Vec<String>) -> Result<Vec<C
         let dim = points.first().map(|point| point.position.len());
         points.push(entry::control_point(keys, &place, dim)?);
     }
+    if version == 1 {
+        notes.extend(free_what_was_moved(&mut points));
+    }
     notes.extend(entry::NEW_KEYS.into_iter().filter(|key| new_keys.contains(key)).map(passed_over));
     Ok(points)
+}
+
+/// In version 1 the lock only kept the editor from control points, moved ones among them, which would go back to rest by today's.
+fn free_what_was_moved(points: &mut [ControlPoint]) -> Option<String> {
+    let mut freed = Vec::new();
+    for point in points.iter_mut().filter(|point| point.locked) {
+        if point.target != point.position || point.orientation.is_some() {
+            point.locked = false;
+            freed.push(&*point.name);
+        }
+    }
+    (!freed.is_empty()).then(|| {
+        format!(
+            "the lock of {} is left out: in version 1 it kept what was moved where it was, now it would take it back to rest",
+            names(freed)
+        )
+    })
 }
 
 fn take_settings(session: &mut Session, keys: &mut Map<String, Value>) -> Result<(), Error> {
