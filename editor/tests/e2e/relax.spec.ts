@@ -16,6 +16,8 @@ async function setRelax(editor: Page, value: string): Promise<void> {
   await fitted(editor);
 }
 
+test.setTimeout(180_000); // the command line runs six times
+
 test("relaxed, the shape is shown in a drag as it is saved, and as the command line makes it", async ({ editor }, info) => {
   await openSample(editor, "Chair");
   await editor.locator("label", { hasText: /^Inverse distance$/ }).click();
@@ -42,7 +44,14 @@ test("relaxed, the shape is shown in a drag as it is saved, and as the command l
   await editor.mouse.move(at.x, at.y);
   await editor.mouse.down();
   await editor.mouse.move(at.x + 30, at.y + 50, { steps: 12 });
-  // Still held.
+  // Still held; what the editor tells of itself follows a drag at a distance.
+  await expect
+    .poll(async () => {
+      const { target } = (await session(editor)).points.find(({ id }) => id === foot.id)!;
+      const now = await screenOf(editor, target);
+      return Math.hypot(now.x - at.x - 30, now.y - at.y - 50);
+    })
+    .toBeLessThan(0.5);
   const right = await expected();
   expect(difference(right, await expected("--relax", "0"))).toBeGreaterThan(0.01);
   await expect.poll(async () => difference(right, await shown(editor))).toBeLessThan(1e-5);
@@ -62,8 +71,8 @@ test("relaxed, the shape is shown in a drag as it is saved, and as the command l
   await setRelax(editor, "0");
   const plain = await expected();
   await expect.poll(async () => difference(plain, await shown(editor))).toBeLessThan(1e-4);
-  await editor.keyboard.press("Control+z");
-  await editor.keyboard.press("Control+z");
+  await editor.getByRole("button", { name: "Undo: Relax" }).click();
+  await editor.getByRole("button", { name: "Undo: Relax" }).click();
   expect((await session(editor)).settings.relax).toBe(1);
   await expect.poll(async () => difference(right, await shown(editor))).toBeLessThan(1e-5);
   expect(await fit(editor)).toEqual(relaxedFit);
@@ -79,20 +88,4 @@ test("relaxed, the shape is shown in a drag as it is saved, and as the command l
   await editor.getByRole("button", { name: "Save" }).click();
   await editor.getByRole("menuitem", { name: /page/i }).click();
   await expect(editor.getByRole("alert").filter({ hasText: "A page is dragged without relax" })).toBeVisible();
-});
-
-test("relaxed weights are compared with relaxed ones", async ({ editor }) => {
-  await openSample(editor, "Chair");
-  await fitted(editor);
-  await setRelax(editor, "1");
-  const { points } = await session(editor);
-  const at = await screenOf(editor, points[0].target);
-  await editor.mouse.move(at.x, at.y);
-  await editor.mouse.down();
-  await editor.mouse.move(at.x + 20, at.y + 60, { steps: 5 });
-  await editor.mouse.up();
-  await editor.getByRole("button", { name: "Compare" }).click();
-  await expect.poll(() => editor.evaluate(() => neuralmls.state().comparisonFit.status), { timeout: 60_000 }).toBe("ready");
-  await editor.waitForTimeout(1000);
-  await editor.screenshot({ path: picture("relax-comparison.png") });
 });
