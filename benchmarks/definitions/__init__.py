@@ -15,6 +15,7 @@ from benchmarks.definitions import (
     logits_growth,
     million,
     process,
+    relax,
     shape_aware,
     training,
 )
@@ -36,4 +37,5 @@ ALL: dict[str, Definition] = {
     "growth": growth.run,
     "exact": exact.run,
     "shape-aware": shape_aware.run,
+    "relax": relax.run,
 }

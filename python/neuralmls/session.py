@@ -205,27 +205,39 @@ class Session:
             core = core.with_frame(as_box(frame, self.points.dimension))
         return Session._of(core, self._notes)
 
-    def fit(self, *shapes: Shape | ArrayLike, progress: Progress | None = None) -> Map:
+    def fit(
+        self, *shapes: Shape | ArrayLike, faces: ArrayLike | None = None, progress: Progress | None = None
+    ) -> Map:
         """Fit the weights to the control points: the map that `neuralmls deform` applies to these shapes.
 
         Parameters
         ----------
         shapes : Shape, or points (n, d)
             What it is for: the weights are trained in the box around all of them, unless the session has its own frame;
-            shape-aware weights learn from all of them. Without any, in the box of the control points.
+            shape-aware weights learn from all of them, and `relax` takes their stiffness. Without any, in the box of the
+            control points.
+        faces : (f, 3) integers, optional
+            Triangles of the points, where one array of points is all there is.
         progress : callable, optional
             Told the fraction done, from 0 to 1; what it raises stops the training.
 
         Raises
         ------
         ArgumentError
-            The shapes have another dimension, or no size; shape-aware weights without a shape.
+            A face names no point, or belongs to no one array of points; the shapes have another dimension, or no size;
+            shape-aware weights or `relax` without a shape, `relax` in 1D.
         """
         dimension = self.points.dimension
         boxes, bounds = [box_of(shape, dimension) for shape in shapes], self.frame
         if boxes and bounds is None:
             bounds = as_box(box_around(np.concatenate(boxes)), dimension)
-        shape = together(shapes, dimension) if shapes else None
+        learns = self.weights == "shape-aware" or self.settings["relax"] > 0
+        shape = together(shapes, dimension) if shapes and learns else None
+        if faces is not None:
+            if len(shapes) != 1 or isinstance(shapes[0], Shape):
+                raise ArgumentError("faces: expected them beside one array of points")
+            triangles = as_indices(faces, len(as_points("shapes", shapes[0], dimension)))
+            shape = (shape[0], triangles) if shape else None
         return Map._of(self._core.fit(bounds, shape, progress))
 
     def _repr_html_(self) -> str:
@@ -285,12 +297,13 @@ class Map:
         return self._core.side
 
     def with_session(self, session: Session) -> Map:
-        """Return the map of another session with the same weights: other targets, transform, temperature, handles.
+        """Return the map of another session with the same weights: other targets, transform, temperature, handles, relax.
 
         Raises
         ------
         ArgumentError
-            The control points at rest or the settings of the weights are others, which needs a fit.
+            The control points at rest or the settings of the weights are others, or `relax` is above 0 and was not at
+            the fit: this needs a fit.
         """
         return Map._of(self._core.with_session(session._core))
 
@@ -506,12 +519,11 @@ class Map:
         """The same with weights that know the shape; None where they cannot be fitted."""
         if x.shape[1] == 1:
             return None
+        session = self._core.session.with_settings('{"weights": {"kind": "shape-aware"}}').with_frame(None)
         try:
-            weights = ShapeAwareWeights.fit(self._core.session.points.sources, x, faces)
+            return session.fit(box_around(x), (x, as_indices(faces, len(x))), None)
         except NeuralMLSError:  # no size to measure by
             return None
-        session = self._core.session.with_settings('{"weights": {"kind": "shape-aware"}}')
-        return _core.Map.of(session, weights._core)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the map: weights bit for bit, and the session, as a safetensors file.

@@ -150,7 +150,7 @@ impl Deformer {
     /// shape takes them: `y <- y + amount (E(x) - y)`; their `maps` likewise, where there are any.
     ///
     /// # Errors
-    /// Where they are not [lifted](Deformer::lifted), or `y` or `maps` have another size.
+    /// Where they are not [lifted](Deformer::lifted) to that shape, or `y` or `maps` have another size.
     pub fn relax(
         &self,
         relaxed: &Relaxed,
@@ -158,8 +158,8 @@ impl Deformer {
         y: &mut [f64],
         maps: Option<&mut [f64]>,
     ) -> Result<(), Error> {
-        let Some(lift) = &self.lift else {
-            return Err(Error::argument("relax", "the points are not bound to an elastic shape"));
+        let Some(lift) = self.lift.as_ref().filter(|lift| lift.fits(relaxed)) else {
+            return Err(Error::argument("relax", "the points are not bound to this elastic shape"));
         };
         let maps = maps.unwrap_or_default();
         if y.len() != self.x.len() || !maps.is_empty() && maps.len() != self.x.len() * self.dim {

@@ -9,6 +9,7 @@
 //! | `mls` | weights and moved control points -> a rigid, similarity or affine map a point |
 //! | `deformer` | joins them: points bound to weights once, deformed many times |
 //! | `aim` | the targets with which control points arrive |
+//! | `relax` | what control points leave open, decided by the shape's own stiffness |
 //! | `probe`, `advice` | a deformation looked at in places all over a shape; what is likely bad about it, and which setting would help |
 //! | `geometry` | coordinates relative to a box, a kd-tree over points, [`placement`] of control points |
 //! | `machine` | wide registers, threads, [`memory`], [`progress`] |

@@ -8,8 +8,10 @@ use crate::deformer::{Deformer, Pose};
 use crate::error::Error;
 use crate::geometry::placement::sample_surface;
 use crate::mls::Transform;
+use crate::relax::Elastic;
 use crate::softmax;
 use crate::weights::Weights;
+use std::sync::Arc;
 
 /// So many places are looked at on a shape.
 pub const PLACES: usize = 4000;
@@ -28,6 +30,9 @@ pub struct Probe {
     all: Deformer,
     handles: Handles,
     careful: bool,
+    transform: Transform,
+    /// An elastic shape, and how far places go with it.
+    elastic: Option<(Arc<Elastic>, f64)>,
 }
 
 /// What a deformation does at the places.
@@ -96,7 +101,24 @@ impl Probe {
             all: Deformer::of_logits(all, dim, p, logits, transform)?,
             handles: Handles::new(weights, transform)?,
             careful,
+            transform,
+            elastic: None,
         })
+    }
+
+    /// The same, of places that go with an elastic shape too: [`Probe::set_relax`] says how far, and at first it is not at all.
+    ///
+    /// # Errors
+    /// [`Error::Memory`].
+    pub fn with(self, elastic: Arc<Elastic>) -> Result<Probe, Error> {
+        Ok(Probe { all: self.all.lifted(&elastic)?, elastic: Some((elastic, 0.0)), ..self })
+    }
+
+    /// Lets places go the part `amount` (0 to 1) of the way to where the elastic shape takes them, if there is one.
+    pub fn set_relax(&mut self, amount: f64) {
+        if let Some((_, relax)) = &mut self.elastic {
+            *relax = amount;
+        }
     }
 
     /// The places, k x dim.
@@ -116,6 +138,7 @@ impl Probe {
 
     /// Lets the deformations that are looked at do something else to the shape locally.
     pub fn set_transform(&mut self, transform: Transform) {
+        self.transform = transform;
         self.all.set_transform(transform);
         self.handles.set_transform(transform);
     }
@@ -137,6 +160,11 @@ impl Probe {
         };
         let aimed = Pose { q: &aim.targets, ..pose };
         let mut y = self.all.deform(aimed, temperature, false, &mut |_| true)?.positions;
+        if let Some((elastic, amount)) = self.elastic.as_ref().filter(|(_, amount)| *amount > 0.0) {
+            if let Some(relaxed) = elastic.relax(aimed, temperature, self.transform)? {
+                self.all.relax(&relaxed, *amount, &mut y, None)?;
+            }
+        }
         let (dim, beside) = (self.dim, y.split_off(self.places.len()));
         let sides: Vec<&[f64]> = beside.chunks_exact(self.places.len()).collect();
         let jacobian = |place: usize| -> [[f64; 3]; 3] {

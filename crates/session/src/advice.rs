@@ -46,14 +46,24 @@ impl Map {
         }
         let places = neuralmls_core::places(x, dim, faces, neuralmls_core::PLACES)?;
         let side = 2.0 * neuralmls_core::Frame::around(x, dim).half;
-        let careful = self.session().settings.handles != HandlesSetting::Exact;
-        Ok(Probe::new(self.weights(), &places, side, self.transform(), careful)?)
+        self.probe_at(&places, side)
+    }
+
+    /// The same at places of a shape whose longest side is `side`.
+    fn probe_at(&self, places: &[f64], side: f64) -> Result<Probe, Error> {
+        let mut probe = Probe::new(self.weights(), places, side, self.transform(), true)?;
+        if let Some(elastic) = self.shared_elastic() {
+            probe = probe.with(elastic)?;
+        }
+        self.set_up(&mut probe);
+        Ok(probe)
     }
 
     /// Lets a probe of this map's weights look at it with other settings.
     pub fn set_up(&self, probe: &mut Probe) {
         probe.set_transform(self.transform());
         probe.set_careful(self.session().settings.handles != HandlesSetting::Exact);
+        probe.set_relax(self.session().settings.relax);
     }
 
     /// What this map does at the places that are probed.
@@ -190,8 +200,7 @@ impl Map {
             return Ok(None);
         };
         let (temperature, adherence) = (self.session().settings.temperature, self.session().adherence());
-        let careful = self.session().settings.handles != HandlesSetting::Exact;
-        let theirs = Probe::new(other.weights(), probe.places(), probe.side(), self.transform(), careful)?;
+        let theirs = other.probe_at(probe.places(), probe.side())?;
         let now = part(probe.parts(pose, temperature, &adherence)?);
         let then = part(theirs.parts(pose, temperature, &adherence)?);
         Ok((then <= now / 2.0)

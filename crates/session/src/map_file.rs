@@ -9,6 +9,8 @@
 //! | `frequencies` | f32 (k, d) | networks: of the Fourier features, k = 0 without |
 //! | `losses`, `loss` | f64 (steps), (1) | networks |
 //! | `alpha`, `epsilon` | f64 (1) | inverse distance |
+//! | `elastic_nodes`, `elastic_areas` | f64 (k, d), (k) | maps that were fitted with `relax` |
+//! | `elastic_links`, `elastic_stiffness` | u32 (l, 2), f64 (l) | the same |
 //!
 //! Its one entry of metadata, `neuralmls-map`, is JSON: `version`, `weights` (their kind), and `session`, a session file; a file of weights alone
 //! has none. (One entry, since several would be written in any order, and the same map is to be the same bytes.)
@@ -16,7 +18,9 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use neuralmls_core::{Frame, InverseDistance, Layer, Network, Trained, Weights, MOST_CONTROL_POINTS};
+use neuralmls_core::{
+    Body, Elastic, Frame, InverseDistance, Layer, Network, Trained, Weights, MOST_CONTROL_POINTS,
+};
 use safetensors::tensor::{serialize, Dtype, SafeTensors, View};
 use serde_json::{json, Value};
 
@@ -28,7 +32,8 @@ const VERSION: u64 = 1;
 impl Map {
     /// The map as a file.
     pub fn to_bytes(&self) -> Vec<u8> {
-        write(self.weights(), Some(self.session().to_json()))
+        let elastic = self.shared_elastic();
+        write(self.weights(), elastic.as_ref().map(|elastic| elastic.body()), Some(self.session().to_json()))
     }
 
     /// Reads what [`Map::to_bytes`] wrote.
@@ -36,17 +41,19 @@ impl Map {
     /// # Errors
     /// Where it is no such file.
     pub fn from_bytes(bytes: &[u8]) -> Result<Map, Error> {
-        let (weights, session) = parse(bytes)?;
+        let Parsed { weights, body, session } = parse(bytes)?;
         let session = session.ok_or_else(|| broken("it holds weights without a session: it is no map"))?;
         let read = read(session.as_bytes(), "session.json")
             .map_err(|error| broken(&format!("its session: {error}")))?;
-        Map::of(read.session, weights).map_err(|error| broken(&error.message))
+        let elastic = body.map(|body| Elastic::of(&weights, body)).transpose();
+        let elastic = elastic.map_err(|error| broken(&error.to_string()))?;
+        Map::elastic(read.session, weights, elastic).map_err(|error| broken(&error.message))
     }
 }
 
 /// Weights alone as a file.
 pub fn weights_to_bytes(weights: &Weights) -> Vec<u8> {
-    write(weights, None)
+    write(weights, None, None)
 }
 
 /// Reads the weights of a file: of weights alone, or of a map.
@@ -54,7 +61,7 @@ pub fn weights_to_bytes(weights: &Weights) -> Vec<u8> {
 /// # Errors
 /// Where it is no such file.
 pub fn weights_from_bytes(bytes: &[u8]) -> Result<Weights, Error> {
-    Ok(parse(bytes)?.0)
+    Ok(parse(bytes)?.weights)
 }
 
 /// An array of a file that is written.
@@ -68,6 +75,11 @@ impl Array {
     fn doubles(shape: &[usize], numbers: &[f64]) -> Array {
         let bytes = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
         Array { dtype: Dtype::F64, shape: shape.to_vec(), bytes }
+    }
+
+    fn indices(shape: &[usize], numbers: &[u32]) -> Array {
+        let bytes = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+        Array { dtype: Dtype::U32, shape: shape.to_vec(), bytes }
     }
 
     fn singles(shape: &[usize], numbers: &[f32]) -> Array {
@@ -94,7 +106,7 @@ impl View for &Array {
     }
 }
 
-fn write(weights: &Weights, session: Option<String>) -> Vec<u8> {
+fn write(weights: &Weights, body: Option<&Body>, session: Option<String>) -> Vec<u8> {
     let (p, dim, frame) = (weights.control_points(), weights.dim(), weights.frame());
     let mut arrays = vec![
         ("control_points".to_string(), Array::doubles(&[p.len() / dim, dim], p)),
@@ -118,6 +130,15 @@ fn write(weights: &Weights, session: Option<String>) -> Vec<u8> {
             arrays.push(("epsilon".into(), Array::doubles(&[1], &[function.epsilon()])));
         }
     }
+    if let Some(Body { nodes, links, stiffness, areas }) = body {
+        let (nodes_in_all, links_in_all) = (areas.len(), links.len());
+        arrays.extend([
+            ("elastic_nodes".to_string(), Array::doubles(&[nodes_in_all, dim], nodes)),
+            ("elastic_areas".into(), Array::doubles(&[nodes_in_all], areas)),
+            ("elastic_links".into(), Array::indices(&[links_in_all, 2], links.as_flattened())),
+            ("elastic_stiffness".into(), Array::doubles(&[links_in_all], stiffness)),
+        ]);
+    }
     let mut said = json!({"version": VERSION, "weights": weights.kind()});
     if let Some(session) = session {
         said["session"] = serde_json::from_str(&session).expect("a session is written as JSON");
@@ -127,7 +148,14 @@ fn write(weights: &Weights, session: Option<String>) -> Vec<u8> {
     serialize(views, Some(metadata)).expect("arrays whose shapes fit their bytes")
 }
 
-fn parse(bytes: &[u8]) -> Result<(Weights, Option<String>), Error> {
+/// What a file holds.
+struct Parsed {
+    weights: Weights,
+    body: Option<Body>,
+    session: Option<String>,
+}
+
+fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
     let unread = |error: safetensors::SafeTensorError| broken(&error.to_string());
     let (_, head) = SafeTensors::read_metadata(bytes).map_err(unread)?;
     let arrays = Arrays(SafeTensors::deserialize(bytes).map_err(unread)?);
@@ -179,7 +207,21 @@ fn parse(bytes: &[u8]) -> Result<(Weights, Option<String>), Error> {
         }
         _ => return Err(broken("weights: expected neural, shape-aware or inverse-distance")),
     };
-    Ok((weights, said.get("session").map(Value::to_string)))
+    let body = arrays.has("elastic_nodes").then(|| body(&arrays, dim)).transpose()?;
+    Ok(Parsed { weights, body, session: said.get("session").map(Value::to_string) })
+}
+
+fn body(arrays: &Arrays<'_>, dim: usize) -> Result<Body, Error> {
+    let nodes = arrays.shape("elastic_nodes", 2)?[0];
+    let links = arrays.shape("elastic_links", 2)?[0];
+    let (pairs, _) = arrays.bytes("elastic_links", Dtype::U32, &[links, 2])?.as_chunks::<8>();
+    let end = |bytes: &[u8]| u32::from_le_bytes(bytes.try_into().expect("four bytes"));
+    Ok(Body {
+        nodes: arrays.doubles("elastic_nodes", &[nodes, dim])?,
+        areas: arrays.doubles("elastic_areas", &[nodes])?,
+        links: pairs.iter().map(|pair| [end(&pair[..4]), end(&pair[4..])]).collect(),
+        stiffness: arrays.doubles("elastic_stiffness", &[links])?,
+    })
 }
 
 fn network(arrays: &Arrays<'_>, m: usize, dim: usize, frame: Frame) -> Result<Network, Error> {
@@ -205,6 +247,10 @@ fn network(arrays: &Arrays<'_>, m: usize, dim: usize, frame: Frame) -> Result<Ne
 struct Arrays<'a>(SafeTensors<'a>);
 
 impl Arrays<'_> {
+    fn has(&self, name: &str) -> bool {
+        self.0.tensor(name).is_ok()
+    }
+
     fn shape(&self, name: &str, dimensions: usize) -> Result<Vec<usize>, Error> {
         let array = self.0.tensor(name).map_err(|_| broken(&format!("{name}: there is no such array")))?;
         if array.shape().len() != dimensions {

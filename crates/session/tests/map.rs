@@ -58,6 +58,71 @@ fn a_saved_map_is_the_same_map_to_the_bit() {
     }
 }
 
+/// Fitted to points of a spiral, with the elastic finish.
+fn elastic(weights: WeightsSettings, relax: f64) -> Map {
+    let mut session = session(weights);
+    session.settings.relax = relax;
+    let spiral = |i: i32| {
+        let t = 0.01 * f64::from(i);
+        [t.cos() * t / 6.0, t.sin() * t / 6.0, t / 3.0 - 1.0]
+    };
+    let x: Vec<f64> = (0..600).flat_map(spiral).collect();
+    let bounds = Bounds::new(vec![-1.0; 3], vec![1.0; 3], 3).unwrap();
+    let shape = neuralmls_core::Shape { x: &x, faces: &[] };
+    moved_map(&session.fit(Some(&bounds), Some(shape), &mut |_| true).unwrap())
+}
+
+fn moved_map(map: &Map) -> Map {
+    map.with(moved(map.session(), "p3", [0.1, 0.4, 0.0])).unwrap()
+}
+
+fn relaxing(map: &Map, relax: f64) -> Map {
+    let mut session = map.session().clone();
+    session.settings.relax = relax;
+    map.with(session).unwrap()
+}
+
+#[test]
+fn a_saved_elastic_map_is_the_same_map_to_the_bit() {
+    for weights in [neural(), classic()] {
+        let map = elastic(weights, 0.7);
+        let bytes = map.to_bytes();
+        let again = Map::from_bytes(&bytes).unwrap();
+        assert_eq!(again.to_bytes(), bytes);
+        let x = places();
+        let found = again.at(&x, &mut |_| true).unwrap();
+        assert_eq!(found, map.at(&x, &mut |_| true).unwrap());
+        assert_ne!(found, relaxing(&map, 0.0).at(&x, &mut |_| true).unwrap());
+    }
+}
+
+#[test]
+fn relax_slides_from_moving_least_squares_to_the_elastic_shape_and_control_points_stay() {
+    let map = elastic(classic(), 1.0);
+    let at = |relax: f64, x: &[f64]| relaxing(&map, relax).at(x, &mut |_| true).unwrap();
+    let x = places();
+    for ((none, half), all) in at(0.0, &x).iter().zip(at(0.5, &x)).zip(at(1.0, &x)) {
+        assert!((half - 0.5 * (none + all)).abs() < 1e-12);
+    }
+    let p = map.session().points.sources();
+    for (none, all) in at(0.0, &p).iter().zip(at(1.0, &p)) {
+        assert!((none - all).abs() < 1e-9, "{none} {all}");
+    }
+    let plain = fitted(&session(classic()));
+    assert_eq!(plain.at(&p, &mut |_| true).unwrap(), p);
+}
+
+#[test]
+fn what_no_shape_was_known_for_cannot_relax() {
+    let mut session = session(classic());
+    session.settings.relax = 0.5;
+    let error = session.fit(None, None, &mut |_| true).err().unwrap();
+    assert_eq!(error.message, "shapes: relax needs at least one shape, whose stiffness decides");
+    let error = fitted(&self::session(classic())).with(session).err().unwrap();
+    let expected = "relax: the map was fitted without, and knows no shape; fit it with relax above 0";
+    assert_eq!((error.kind, &error.message[..]), (ErrorKind::Argument, expected));
+}
+
 #[test]
 fn a_session_keeps_the_frame_in_which_it_was_fitted() {
     let map = fitted(&session(neural()));

@@ -28,8 +28,8 @@ def benchmark() -> None:
 @click.option(
     "--methods",
     metavar="NAME,...",
-    help="neural,neural-exact,shape-aware,shape-aware-exact,classic,rbf,arap,arap-from-fit,"
-    "biharmonic-displacements if not given; also biharmonic, which is slow.",
+    help="neural,neural-exact,shape-aware,shape-aware-exact,neural-relax,shape-aware-relax,classic,rbf,arap,"
+    "arap-from-fit,biharmonic-displacements if not given; also biharmonic, which is slow.",
 )
 @settings.options(alpha=2)
 @click.option("--counts", metavar="M,...", default="12,40", help="Numbers of control points.")

@@ -22,7 +22,16 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from neuralmls import Deformer, InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
+from neuralmls import (
+    ControlPoints,
+    Deformer,
+    InverseDistanceWeights,
+    Map,
+    NeuralWeights,
+    Session,
+    ShapeAwareWeights,
+    Weights,
+)
 from neuralmls.errors import ArgumentError
 from neuralmls.plugin import Transform
 from neuralmls_research import baselines
@@ -117,9 +126,10 @@ def neural(
     transform: Transform = "rigid",
     temperature: float = 1.0,
     adherence: float = 0.0,
+    relax: float = 0.0,
     **training: Any,
 ) -> Method:
-    """The paper's weights, with the options of `Deformer` and of `NeuralWeights.fit` (steps, width, seed, ...).
+    """The paper's weights, with the options of `Session` and of `NeuralWeights.fit` (steps, width, seed, ...).
 
     Raises
     ------
@@ -130,7 +140,10 @@ def neural(
     def fitted(shape: Geometry, p: ArrayLike) -> Weights:
         return NeuralWeights.fit(p, bounds=_box(shape), **training)
 
-    settings = settings_of("neural", adherence, transform=transform, temperature=temperature, **training)
+    said = {"transform": transform, "temperature": temperature, "relax": relax, **training}
+    settings = settings_of("neural", adherence, **said)
+    if relax:
+        return _of_session(title, settings)
     return _of_weights(title, fitted, settings, adherence)
 
 
@@ -140,9 +153,10 @@ def shape_aware(
     transform: Transform = "rigid",
     temperature: float = 1.0,
     adherence: float = 0.0,
+    relax: float = 0.0,
     seed: int = 0,
 ) -> Method:
-    """Weights that know the shape, with the options of `Deformer.deform` and of `ShapeAwareWeights.fit`.
+    """Weights that know the shape, with the options of `Session` and of `ShapeAwareWeights.fit`.
 
     Raises
     ------
@@ -153,7 +167,10 @@ def shape_aware(
     def fitted(shape: Geometry, p: ArrayLike) -> Weights:
         return ShapeAwareWeights.fit(p, shape.positions, shape.faces, seed=seed)
 
-    settings = settings_of("shape-aware", adherence, transform=transform, temperature=temperature, seed=seed)
+    said = {"transform": transform, "temperature": temperature, "relax": relax, "seed": seed}
+    settings = settings_of("shape-aware", adherence, **said)
+    if relax:
+        return _of_session(title, settings)
     return _of_weights(title, fitted, settings, adherence)
 
 
@@ -231,6 +248,26 @@ def _of_weights(
     return Method(title or title_of(settings), bind, settings)
 
 
+def _of_session(title: str | None, settings: Mapping[str, Any]) -> Method:
+    """A session with these settings, which is fitted to the shape."""
+    said = {name: settings[name] for name in ("handles", "relax")} | own(settings)
+
+    def bind(shape: Geometry, p: ArrayLike) -> Bound:
+        session = Session(ControlPoints(p), weights=settings["weights"]["kind"], **said)
+        map = session.fit(shape.positions, faces=shape.faces)
+        of_vertices = map.bind(shape.positions)
+
+        def moved(q: ArrayLike) -> Map:
+            return map.moved(ControlPoints(p, q))
+
+        def positions(q: ArrayLike) -> Array:
+            return np.asarray(moved(q).frame(of_vertices)[0], dtype=np.float64)
+
+        return Bound(positions, lambda q: moved(q).at)
+
+    return Method(title or title_of(settings), bind, settings)
+
+
 def _of_space(name: str) -> Method:
     """A baseline that moves each point by where it is, whatever the shape."""
 
@@ -253,6 +290,8 @@ _MAKERS: dict[str, Callable[..., Method]] = {
     "shape-aware": shape_aware,
     "shape-aware-exact": partial(shape_aware, adherence=1.0),
     "classic": classic,
+    "neural-relax": partial(neural, adherence=1.0, relax=1.0),
+    "shape-aware-relax": partial(shape_aware, adherence=1.0, relax=1.0),
 }
 
 METHODS: dict[str, Method] = {name: maker() for name, maker in _MAKERS.items()} | {

@@ -4,6 +4,8 @@
 'Classic MLS (alpha 1: 1/d^2)'
 >>> title_of(settings_of("shape-aware", 1.0, seed=3))
 'Shape-aware, exact (seed 3) (ours)'
+>>> title_of(settings_of("neural", 1.0, relax=1.0))
+'NeuralMLS, exact, relax 1 (ours)'
 """
 
 from __future__ import annotations
@@ -44,7 +46,7 @@ def own(settings: Mapping[str, Any]) -> dict[str, Any]:
     {'seed': 0, 'transform': 'rigid', 'temperature': 1}
     """
     flat = {**settings.get("weights", {}), **settings}
-    return {name: value for name, value in flat.items() if name not in ("kind", "weights", "handles")}
+    return {name: value for name, value in flat.items() if name not in ("kind", "weights", "handles", "relax")}
 
 
 def title_of(settings: Mapping[str, Any]) -> str:
@@ -55,6 +57,8 @@ def title_of(settings: Mapping[str, Any]) -> str:
     title = TITLES[kind]
     if settings["handles"] != "soft":
         title += ", exact" if settings["handles"] == "exact" else f", handles {settings['handles']:g}"
+    if settings["relax"]:
+        title += f", relax {settings['relax']:g}"
     if said:
         title += f" ({', '.join(_said(name, value) for name, value in said.items())})"
     return title if kind != "shape-aware" and settings["handles"] == "soft" else f"{title} {OURS}"
@@ -67,7 +71,8 @@ def description_of(settings: Mapping[str, Any]) -> str:
     'alpha 0.5: 1/d, epsilon 0, rigid, temperature 1, handles soft'
     """
     said = [_said(name, value) for name, value in own(settings).items() if value is not None or name == "steps"]
-    return ", ".join([*said, f"handles {settings['handles']}"])
+    relax = [f"relax {settings['relax']:g}"] if settings["relax"] else []
+    return ", ".join([*said, f"handles {settings['handles']}", *relax])
 
 
 def _said(name: str, value: Any) -> str:

@@ -30,6 +30,7 @@ POSE_METHODS: dict[str, Method] = METHODS | {
     "classic": classic(alpha=ALPHA),
     "neural": neural(steps=200),
     "neural-exact": neural(steps=200, adherence=1.0),
+    "neural-relax": neural(steps=200, adherence=1.0, relax=1.0),
     **{name: with_loose_parts(METHODS[name]) for name in OF_SURFACES},
 }
 

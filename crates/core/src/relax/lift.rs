@@ -20,12 +20,10 @@ use crate::softmax;
 
 /// Nodes that take a point along.
 const TAKEN: usize = 8;
-/// Of the weights' affinity.
-const POWER: f64 = 1.0;
-/// The least of it.
+/// The least affinity.
 const LEAST: f64 = 1e-3;
-/// Of a node's own distance: how near a control point its node outweighs the others.
-const HELD: f64 = 0.5;
+/// Of the spacing of the nodes: nearer to a control point than this its node outweighs the others.
+const HELD: f64 = 2.0;
 /// Nodes that are looked at first.
 const FIRST: usize = 24;
 /// Points that one thread takes at a time.
@@ -35,6 +33,8 @@ const BLOCK: usize = 1024;
 pub struct Lift {
     dim: usize,
     frame: Frame,
+    /// How many nodes there are.
+    count: usize,
     nodes: Vec<[u16; TAKEN]>,
     shares: Vec<[f32; TAKEN]>,
 }
@@ -69,7 +69,12 @@ impl Lift {
                 (*nodes, *shares) = bound(elastic, &x, &roots, &mut found);
             }
         });
-        Ok(Lift { dim, frame: elastic.frame, nodes, shares })
+        Ok(Lift { dim, frame: elastic.frame, count: elastic.nodes.len(), nodes, shares })
+    }
+
+    /// Whether it is bound to as many nodes.
+    pub(crate) fn fits(&self, relaxed: &Relaxed) -> bool {
+        self.count == relaxed.x.len()
     }
 
     /// Takes the points `x` (n x dim), which are at `y`, the part `amount` of the way to where nodes take them; their `maps` (n x dim x dim) likewise,
@@ -136,10 +141,9 @@ fn bound(
     found: &mut Vec<(f64, u32)>,
 ) -> ([u16; TAKEN], [f32; TAKEN]) {
     let m = roots.len();
-    let power = super::knob("AFFINITY", POWER);
     let away = |node: usize, far: f64| {
         let alike: f32 = elastic.roots[m * node..][..m].iter().zip(roots).map(|(a, b)| a * b).sum();
-        far / f64::from(alike).clamp(LEAST, 1.0).powf(power)
+        far / f64::from(alike).clamp(LEAST, 1.0)
     };
     let (count, mut looked) = (elastic.nodes.len(), FIRST);
     let mut nearest: Vec<(f64, usize)> = Vec::new();
@@ -158,7 +162,7 @@ fn bound(
     }
     let edge = nearest.get(TAKEN).map_or_else(|| 1.5 * nearest[nearest.len() - 1].0, |(ninth, _)| *ninth);
     let (mut nodes, mut shares) = ([0; TAKEN], [0.0; TAKEN]);
-    let held = super::knob("HELD", HELD) * elastic.rest.spacing;
+    let held = HELD * elastic.rest.spacing;
     for (at, &(far, node)) in nearest.iter().take(TAKEN).enumerate() {
         nodes[at] = node as u16;
         shares[at] = if edge > 0.0 { (1.0 - far / edge).powi(2) } else { 1.0 };

@@ -138,6 +138,7 @@ impl Elastic {
         let mut world = p.to_vec();
         let rest_of = &body.nodes[p.len()..];
         world.extend(rest_of.iter().enumerate().map(|(at, c)| c * frame.half + frame.centre[at % dim]));
+        let system = System::new(m, nodes.len(), &body.links);
         // By themselves, as `Handles` has them.
         let mut logits = weights.logits(p, &mut |_| true)?;
         logits.extend(weights.logits(&world[p.len()..], &mut |_| true)?);
@@ -146,8 +147,8 @@ impl Elastic {
             frame,
             p: p.to_vec(),
             world,
-            rest: Rest::new(&nodes, m, &body),
-            system: System::new(m, nodes.len(), &body.links),
+            rest: Rest::new(&nodes, m, &body, &system),
+            system,
             plate: Plate::new(&nodes[..m], dim),
             near: Near::new(&nodes),
             roots: lift::roots(&logits, m),
@@ -288,10 +289,21 @@ fn check_body(body: &Body, p: &[f64], dim: usize) -> Result<(), Error> {
     if body.links.iter().any(|[a, b]| a >= b || *b as usize >= count) {
         return refused("expected links of two different nodes, the smaller first");
     }
+    // From the control points on, as often as there is something new: or a system has no solution.
+    let mut reached: Vec<bool> = (0..count).map(|node| node < p.len() / dim).collect();
+    let mut more = true;
+    while std::mem::take(&mut more) {
+        for ends in &body.links {
+            let [a, b] = ends.map(|end| end as usize);
+            more |= reached[a] != reached[b];
+            (reached[a], reached[b]) = (reached[a] | reached[b], reached[a] | reached[b]);
+        }
+    }
+    if reached.contains(&false) {
+        return refused("expected every node to be linked to a control point");
+    }
     Ok(())
 }
 
-/// TODO remove
-pub(crate) fn knob(name: &str, default: f64) -> f64 {
-    std::env::var(format!("KNOB_{name}")).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
-}
+#[cfg(test)]
+mod tests;

@@ -2,26 +2,27 @@
 //!
 //! ```text
 //! minimise  sum_links W_e (|y_i - y_j - R_i (x_i - x_j)|^2 + |... R_j ...|^2) / 2 + sum_ij k_i b_ij |y_i - q_j - R_i (x_i - p_j)|^2
-//! links     W_e = W0_e / sqrt(rho_e^2 + 0.1^2), rho_e how much the link is bent or stretched: in the L1 sense
+//! links     W_e = W0_e / sqrt(rho_e^2 + 0.03^2), rho_e how much the link is bent or stretched: in the L1 sense
 //! nodes     b_ij = w_ij / sqrt(|y_i - q_j - R_i (x_i - p_j)|^2 + (0.03 n0)^2): each node chooses the control points it is rigid with
 //! ```
 
-use super::system::System;
+use super::system::{Factors, System};
 use super::turn::turned;
 use super::{apply, distance, Body, Position};
 use crate::mls::matrix::Matrix;
 
-/// How much nodes are rigid with control points: times the square of the nodes' spacing in that of the control points.
-const KAPPA: f64 = 5.0;
+/// How much nodes are rigid with control points: times the square of the nodes' spacing in that of the control points. As the other constants here
+/// from true poses of four animals and a dancer (docs/notes/relax.md).
+const KAPPA: f64 = 8.0;
 /// Of the control points' spacing: what counts as rigid.
 const SOFT: f64 = 0.03;
 /// The same of links.
-const SOFT_LINK: f64 = 0.1;
+const SOFT_LINK: f64 = 0.03;
 /// How much the rotations of neighbours count where links leave a rotation open.
 const ALIKE: f64 = 1e-3;
 const ROUNDS: usize = 6;
 const STEPS: usize = 6;
-const TURNS: usize = 6;
+const TURNS: usize = 2;
 
 /// What is the same in every frame.
 pub(super) struct Rest {
@@ -33,6 +34,8 @@ pub(super) struct Rest {
     /// The median distance of a node to the nearest one that it is linked to.
     pub(super) spacing: f64,
     kappa: f64,
+    /// The force that moves each handle by 1 while the others stay and all else is at ease.
+    firm: Vec<f64>,
     starts: Vec<u32>,
     others: Vec<(u32, u32)>,
     arms: Vec<Position>,
@@ -52,7 +55,7 @@ pub(super) struct Moved {
 }
 
 impl Rest {
-    pub(super) fn new(nodes: &[Position], m: usize, body: &Body) -> Rest {
+    pub(super) fn new(nodes: &[Position], m: usize, body: &Body, system: &System) -> Rest {
         let mut starts = vec![0_u32; nodes.len() + 1];
         body.links.iter().flatten().for_each(|&end| starts[end as usize + 1] += 1);
         (1..starts.len()).for_each(|node| starts[node] += starts[node - 1]);
@@ -75,17 +78,23 @@ impl Rest {
         let arm = |[a, b]: &[u32; 2]| -> Position {
             std::array::from_fn(|k| nodes[*a as usize][k] - nodes[*b as usize][k])
         };
-        Rest {
+        let mut rest = Rest {
             m,
             nodes: nodes.to_vec(),
             apart,
             squares,
             spacing,
-            kappa: super::knob("KAPPA", KAPPA) * (spacing / apart).powi(2),
+            kappa: KAPPA * (spacing / apart).powi(2),
             starts,
             others,
             arms: body.links.iter().map(arm).collect(),
+            firm: Vec::new(),
+        };
+        if let Some(mut factors) = system.prepared() {
+            system.factor(&body.links, &body.stiffness, |_| 0.0, &mut factors);
+            rest.firm = (0..m).map(|i| firm(&rest, body, &mut factors, i)).collect();
         }
+        rest
     }
 
     /// The neighbours of a node, and by which links.
@@ -107,17 +116,14 @@ struct Attached {
 pub(super) fn solve(rest: &Rest, body: &Body, system: &System, posed: &Posed<'_>, moved: &mut Moved) -> f64 {
     let Some(mut factors) = system.prepared() else { return 0.0 };
     let (m, count) = (rest.m, rest.nodes.len());
-    let (rounds, steps) =
-        (super::knob("ROUNDS", ROUNDS as f64) as usize, super::knob("STEPS", STEPS as f64) as usize);
-    let turns = super::knob("TURNS", TURNS as f64) as usize;
     let mut right: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; count - m]);
-    for round in 0..rounds {
+    for round in 0..ROUNDS {
         let stiffness = reweighted(rest, body, moved);
-        let firmness = rest.kappa * 10_f64.powf(round as f64 / (rounds - 1) as f64 - 1.0);
+        let firmness = rest.kappa * 10_f64.powf(round as f64 / (ROUNDS - 1) as f64 - 1.0);
         let attached = attached(rest, body, posed, moved, firmness);
         system.factor(&body.links, &stiffness, |free| attached[m + free].firm, &mut factors);
-        for _ in 0..steps {
-            turn(rest, &stiffness, &attached, posed, moved, turns);
+        for _ in 0..STEPS {
+            turn(rest, &stiffness, &attached, posed, moved);
             balance(rest, body, &stiffness, &attached, moved, &mut right);
             factors.solve(&mut right);
             settle(&right, m, &mut moved.y);
@@ -136,13 +142,13 @@ pub(super) fn solve(rest: &Rest, body: &Body, system: &System, posed: &Posed<'_>
             let bent = bent(rest, &at_ease, i, other, link);
             (0..3).for_each(|k| force[k] += body.stiffness[link] * bent[k]);
         }
-        distance(&force, &[0.0; 3]) / compliance(rest, body, &mut factors, i)
+        distance(&force, &[0.0; 3]) / rest.firm[i]
     };
     (0..m).map(give).sum::<f64>() / m as f64
 }
 
-/// `S_ii` of the Schur complement of the free nodes: the force that moves handle i by 1 while the others stay.
-fn compliance(rest: &Rest, body: &Body, factors: &mut super::system::Factors, i: usize) -> f64 {
+/// `S_ii` of the Schur complement of the free nodes.
+fn firm(rest: &Rest, body: &Body, factors: &mut Factors, i: usize) -> f64 {
     let mut column: Vec<f64> = vec![0.0; rest.nodes.len() - rest.m];
     let mut own = 0.0;
     for (other, link) in rest.neighbours(i) {
@@ -166,16 +172,16 @@ fn bent(rest: &Rest, moved: &Moved, i: usize, other: usize, link: usize) -> Posi
 
 /// The stiffness of links that are bent or stretched is less, in the mean as before.
 fn reweighted(rest: &Rest, body: &Body, moved: &Moved) -> Vec<f64> {
-    let soft = super::knob("SOFT_LINK", SOFT_LINK);
     let factor = |(link, [a, b]): (usize, &[u32; 2])| {
         let ([a, b], arm) = ([*a as usize, *b as usize], &rest.arms[link]);
         let square = arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2];
         let mut left = 0.0;
         for end in [a, b] {
             let turned = apply(&moved.maps[end], arm);
-            left += (0..3).map(|k| (moved.y[a][k] - moved.y[b][k] - turned[k]).powi(2)).sum::<f64>();
+            let off: Position = std::array::from_fn(|k| moved.y[a][k] - moved.y[b][k] - turned[k]);
+            left += off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
         }
-        1.0 / (left / (2.0 * square) + soft * soft).sqrt()
+        1.0 / (left / (2.0 * square) + SOFT_LINK * SOFT_LINK).sqrt()
     };
     let factors: Vec<f64> = body.links.iter().enumerate().map(factor).collect();
     let all: f64 = body.stiffness.iter().sum();
@@ -186,7 +192,7 @@ fn reweighted(rest: &Rest, body: &Body, moved: &Moved) -> Vec<f64> {
 /// Each node's centres of the control points that it is rigid with, and how firmly it is.
 fn attached(rest: &Rest, body: &Body, posed: &Posed<'_>, moved: &Moved, firmness: f64) -> Vec<Attached> {
     let m = rest.m;
-    let soft = (super::knob("SOFT", SOFT) * rest.apart).powi(2);
+    let soft = (SOFT * rest.apart).powi(2);
     let mut all = vec![Attached::default(); rest.nodes.len()];
     let (mut sum, mut areas) = (0.0, 0.0);
     for i in m..rest.nodes.len() {
@@ -210,14 +216,7 @@ fn attached(rest: &Rest, body: &Body, posed: &Posed<'_>, moved: &Moved, firmness
 }
 
 /// The local step: each node turns as its links and what it is attached to ask for.
-fn turn(
-    rest: &Rest,
-    stiffness: &[f64],
-    attached: &[Attached],
-    posed: &Posed<'_>,
-    moved: &mut Moved,
-    turns: usize,
-) {
+fn turn(rest: &Rest, stiffness: &[f64], attached: &[Attached], posed: &Posed<'_>, moved: &mut Moved) {
     let Moved { y, maps } = moved;
     let asked = |i: usize, maps: &[Matrix<3>]| -> Matrix<3> {
         let mut sum = [[0.0; 3]; 3];
@@ -240,7 +239,7 @@ fn turn(
     let before = maps.clone();
     for i in 0..rest.nodes.len() {
         if posed.held.get(i).copied().flatten().is_none() {
-            maps[i] = turned(&before[i], &asked(i, &before), turns);
+            maps[i] = turned(&before[i], &asked(i, &before), TURNS);
         }
     }
 }
@@ -282,4 +281,25 @@ fn settle(solved: &[Vec<f64>; 3], m: usize, y: &mut [Position]) {
     for (free, y) in y[m..].iter_mut().enumerate() {
         *y = std::array::from_fn(|k| solved[k][free]);
     }
+}
+
+#[cfg(test)]
+/// One local and one global step of the last round: the stiffness of the links, and of the free nodes what they are attached to.
+pub(super) fn one_step(
+    rest: &Rest,
+    body: &Body,
+    system: &System,
+    posed: &Posed<'_>,
+    moved: &mut Moved,
+) -> (Vec<f64>, Vec<(Position, Position, f64)>) {
+    let mut factors = system.prepared().unwrap();
+    let stiffness = reweighted(rest, body, moved);
+    let attached = attached(rest, body, posed, moved, rest.kappa);
+    let mut right = std::array::from_fn(|_| vec![0.0; rest.nodes.len() - rest.m]);
+    system.factor(&body.links, &stiffness, |free| attached[rest.m + free].firm, &mut factors);
+    turn(rest, &stiffness, &attached, posed, moved);
+    balance(rest, body, &stiffness, &attached, moved, &mut right);
+    factors.solve(&mut right);
+    settle(&right, rest.m, &mut moved.y);
+    (stiffness, attached[rest.m..].iter().map(|own| (own.p, own.q, own.firm)).collect())
 }

@@ -9,6 +9,12 @@ use crate::mls::matrix::Matrix;
 const POWER: f64 = 1.5;
 /// Against a division by 0: a square, in those of the control points' spacing.
 const LEAST: f64 = 1e-3;
+/// Until rotations are smooth: 30 cost 0.2 to 0.5 % of the accuracy (docs/notes/relax.md).
+const STEPS: usize = 60;
+/// Steps of a rotation in one of these.
+const TURNS: usize = 1;
+/// Until control points arrive.
+const ARRIVING: usize = 20;
 
 /// `R_i <- polar(C_i + sum_j W_ij R_j)` from the `rotations` on; then `y = R (x - w p) + w q'`, with targets `q'` at which control points arrive.
 pub(super) fn start(rest: &Rest, body: &Body, posed: &Posed<'_>, rotations: Vec<Matrix<3>>) -> Moved {
@@ -21,8 +27,7 @@ pub(super) fn start(rest: &Rest, body: &Body, posed: &Posed<'_>, rotations: Vec<
         *map = held(i).unwrap_or(*map);
     }
     let mut next = maps.clone();
-    let (steps, turns) = (super::knob("START", 60.0) as usize, super::knob("START_TURNS", 2.0) as usize);
-    for _ in 0..steps {
+    for _ in 0..STEPS {
         for (i, next) in next.iter_mut().enumerate().filter(|(i, _)| held(*i).is_none()) {
             let mut sum = moments[i];
             for (other, link) in rest.neighbours(i) {
@@ -31,7 +36,7 @@ pub(super) fn start(rest: &Rest, body: &Body, posed: &Posed<'_>, rotations: Vec<
                     row.iter_mut().zip(of).for_each(|(sum, e)| *sum += stiff * e);
                 }
             }
-            *next = turned(&maps[i], &sum, turns);
+            *next = turned(&maps[i], &sum, TURNS);
         }
         std::mem::swap(&mut maps, &mut next);
     }
@@ -81,7 +86,7 @@ fn places(rest: &Rest, posed: &Posed<'_>, maps: &[Matrix<3>]) -> Vec<Position> {
         std::array::from_fn(|k| arms[i][k] + q_mean[k])
     };
     let mut q = posed.q.to_vec();
-    for _ in 0..20 {
+    for _ in 0..ARRIVING {
         let arrived: Vec<Position> = (0..m).map(|i| at(i, &q)).collect();
         for (q, (wanted, arrived)) in q.iter_mut().zip(posed.q.iter().zip(arrived)) {
             (0..3).for_each(|k| q[k] += wanted[k] - arrived[k]);
