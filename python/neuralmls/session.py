@@ -205,17 +205,15 @@ class Session:
             core = core.with_frame(as_box(frame, self.points.dimension))
         return Session._of(core, self._notes)
 
-    def fit(
-        self, *shapes: Shape | ArrayLike, faces: ArrayLike | None = None, progress: Progress | None = None
-    ) -> Map:
+    def fit(self, *shapes: Shape | ArrayLike, faces: ArrayLike | None = None, progress: Progress | None = None) -> Map:
         """Fit the weights to the control points: the map that `neuralmls deform` applies to these shapes.
 
         Parameters
         ----------
         shapes : Shape, or points (n, d)
             What it is for: the weights are trained in the box around all of them, unless the session has its own frame;
-            shape-aware weights learn from all of them, and `relax` takes their stiffness. Without any, in the box of the
-            control points.
+            shape-aware weights learn from all of them, and `relax` takes their stiffness. Without any, in the box of
+            the control points.
         faces : (f, 3) integers, optional
             Triangles of the points, where one array of points is all there is.
         progress : callable, optional
@@ -297,7 +295,7 @@ class Map:
         return self._core.side
 
     def with_session(self, session: Session) -> Map:
-        """Return the map of another session with the same weights: other targets, transform, temperature, handles, relax.
+        """Return the map of another session with the same weights, as one with other targets, temperature or relax.
 
         Raises
         ------

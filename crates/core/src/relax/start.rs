@@ -12,7 +12,7 @@ const LEAST: f64 = 1e-3;
 /// Until rotations are smooth: 30 cost 0.2 to 0.5 % of the accuracy (docs/notes/relax.md).
 const STEPS: usize = 60;
 /// Steps of a rotation in one of these.
-const TURNS: usize = 1;
+const TURNS: usize = 2;
 /// Until control points arrive.
 const ARRIVING: usize = 20;
 
