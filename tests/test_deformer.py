@@ -67,6 +67,8 @@ def test_logits_of_someones_own_are_taken_as_closely_as_those_of_the_package(han
     rotations[0] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
     options = {"handles": handles, "transform": "similarity", "temperature": 0.5, "rotations": rotations}
     assert np.array_equal(nm.deform(x, p, q, weights=Same(), **options), nm.deform(x, p, q, weights=own, **options))
+    with pytest.raises(nm.ArgumentError, match="relax: expected weights of this package"):
+        nm.deform(x, p, q, weights=Same(), relax=0.5)
 
 
 def test_maps_are_returned_when_asked():
@@ -202,6 +204,7 @@ def test_other_threads_run_during_a_long_call():
         ({"p": [[1.0, 1.0, 1.0]] * 2}, "numbers 0 and 1 are in the same place"),
         ({"temperature": 0}, "temperature: expected a number above 0, found 0"),
         ({"temperature": "hot"}, "temperature: expected a number above 0, found 'hot'"),
+        ({"relax": 2}, "relax: expected a number of at least 0 and at most 1, found 2"),
         ({"x": [[1j, 0, 0]]}, "x: expected an \\(n, d\\) array of numbers: they are complex"),
         (
             {"weights": nm.InverseDistanceWeights([[9.0, 0.0, 0.0]])},

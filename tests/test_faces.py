@@ -1,6 +1,6 @@
 """One session, one result: `neuralmls deform`, `Map` and `nm.deform` give the same (the editor: editor/tests/e2e).
 
-tests/faces.json has control points of the sample chair, and 20 sessions: settings, frame, what differs in the points.
+tests/faces.json has control points of the sample chair, and 22 sessions: settings, frame, what differs in the points.
 """
 
 from __future__ import annotations
@@ -68,9 +68,11 @@ def test_every_face_gives_the_same(session, chair, tmp_path, monkeypatch):
         rotations=read.points.rotations,
         scales=read.points.scales,
         weights=weights_of(read, chair),
+        faces=chair.faces,
         transform=read.settings["transform"],
         temperature=read.settings["temperature"],
         handles=read.settings["handles"],
+        relax=read.settings["relax"],
     )
     # Matrices go by way of axis and angle, which rounds.
     assert np.abs(called - y).max() <= (1e-13 if read.points.is_oriented else 0)
@@ -78,7 +80,7 @@ def test_every_face_gives_the_same(session, chair, tmp_path, monkeypatch):
 
 def test_the_sessions_are_of_every_kind():
     said = [session["settings"] for session in SESSIONS]
-    assert len(SESSIONS) == 20
+    assert len(SESSIONS) == 22
     assert {settings.get("weights", {}).get("kind") for settings in said} == {
         None,
         "neural",
@@ -87,6 +89,7 @@ def test_the_sessions_are_of_every_kind():
     }
     assert {settings.get("transform", "rigid") for settings in said} == {"rigid", "similarity", "affine"}
     assert {settings.get("handles", "auto") for settings in said} == {"auto", "exact", "soft", 0.5}
+    assert {settings.get("relax", 0) for settings in said} == {0, 0.4, 1}
     temperatures = [settings.get("temperature", 1) for settings in said]
     assert (min(temperatures), max(temperatures)) == (0.1, 10)
     assert any("frame" in session for session in SESSIONS)

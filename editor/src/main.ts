@@ -48,7 +48,7 @@ const display: Display = {
     return { hasAppearance };
   },
   setWeights: (slot, weights) => viewport.setWeights(slot, weights),
-  showFrame: (positions, maps) => viewport.showFrame(positions, maps),
+  showFrame: (slot, positions, maps) => viewport.showFrame(slot, positions, maps),
   setView: (view) => viewport.setView(view),
   focus: (what) => viewport.focus(what),
   cancel: () => viewport.cancel(),

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
+from neuralmls import _core
 from neuralmls.arrays import as_points
 from neuralmls.control_points import ControlPoints
 from neuralmls.errors import ArgumentError
@@ -83,11 +84,13 @@ def fitted(
     transform: Transform,
     temperature: float,
     handles: Handles,
+    relax: float = 0.0,
     rotations: Rotations = None,
     scales: Scales = None,
     names: Sequence[str] | None = None,
+    shape: tuple[NDArray[np.float64], NDArray[np.uint32]] | None = None,
 ) -> Map:
-    """Return the map of weights that were fitted already, as `advise` has its parameters."""
+    """Return the map of weights that were fitted already, as `advise` has its parameters; `shape`: for `relax`."""
     p = weights.control_points
     q = as_points("targets", targets, p.shape[1])
     if len(q) != len(p):
@@ -96,8 +99,15 @@ def fitted(
         raise ArgumentError(f"names: expected {len(p)} of them, found {len(names)}")
     points = ControlPoints(p, q, names, orientations(rotations, scales, *p.shape))
     kind = weights._kind
-    session = Session(points, weights=kind, transform=transform, temperature=temperature, handles=handles)  # type: ignore[arg-type]
-    return Map.of(session, weights)
+    session = Session(
+        points,
+        weights=kind,  # type: ignore[arg-type]
+        transform=transform,
+        temperature=temperature,
+        handles=handles,
+        relax=relax,
+    )
+    return Map._of(_core.Map.of(session._core, weights._core, shape))
 
 
 def orientations(rotations: Rotations, scales: Scales, count: int, dimension: int) -> list[Orientation | None] | None:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, get_args
-
 import numpy as np
 from numpy.typing import ArrayLike
 
-from neuralmls.advice import orientations
+from neuralmls.advice import fitted, orientations
 from neuralmls.arrays import as_points, box_around
 from neuralmls.control_points import ControlPoints
 from neuralmls.deformer import Deformer, Floats
@@ -15,9 +13,9 @@ from neuralmls.errors import ArgumentError
 from neuralmls.handles import ExactHandles
 from neuralmls.orientations import Rotations, Scales
 from neuralmls.placement import as_indices
-from neuralmls.session import Map, Session
+from neuralmls.session import Session
 from neuralmls.settings import Handles, Transform, WeightsName
-from neuralmls.weights import HasLogits, Weights
+from neuralmls.weights import HasLogits, InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
 
 
 def deform(
@@ -57,7 +55,7 @@ def deform(
         How closely the control points arrive at their targets (see `Session`). "soft" is the paper's way, in which
         they stop near them.
     relax : float, 0 to 1
-        How far the elastic finish goes (see `Session`); above 0 the weights are to be said by their name.
+        How far the elastic finish goes (see `Session`); above 0 for weights of this package only.
     seed : int
         Of the network's training (neural and shape-aware weights).
 
@@ -83,25 +81,39 @@ def deform(
         )
     points = as_points("x", x, sources.shape[1])
     box = box_around(points) if len(points) and (points != points[0]).any() else None
-    posed = ControlPoints(sources, targets, orientations=orientations(rotations, scales, *sources.shape))
-    settings: dict[str, Any] = {"transform": transform, "temperature": temperature, "handles": handles, "relax": relax}
-    if isinstance(weights, str) and weights in get_args(WeightsName):
-        parameters = {} if weights == "inverse-distance" else {"seed": seed}
-        session = Session(posed, weights=weights, **parameters, **settings)
-        shape = points, as_indices(faces, len(points))
-        return Map._of(session._core.fit(box, shape, None)).at(x)
-    if isinstance(weights, str) or not hasattr(weights, "control_points"):
+    function: Weights | HasLogits
+    if isinstance(weights, str) and weights == "neural":
+        function = NeuralWeights.fit(sources, bounds=box, seed=seed)
+    elif isinstance(weights, str) and weights == "shape-aware":
+        function = ShapeAwareWeights.fit(sources, points, faces, seed=seed)
+    elif isinstance(weights, str) and weights == "inverse-distance":
+        function = InverseDistanceWeights(sources, bounds=box)
+    elif isinstance(weights, str) or not hasattr(weights, "control_points"):
         raise ArgumentError(
             f"weights: expected 'neural', 'shape-aware', 'inverse-distance' or a weight function, found {weights!r}"
         )
-    if not np.array_equal(as_points("weights.control_points", weights.control_points), sources):
-        raise ArgumentError("weights: expected a weight function of the control points p, found one of others")
-    if isinstance(weights, Weights):
-        return Map.of(Session(posed, weights=weights._kind, **settings), weights).at(x)
+    else:
+        function = weights
+        if not np.array_equal(as_points("weights.control_points", function.control_points), sources):
+            raise ArgumentError("weights: expected a weight function of the control points p, found one of others")
+    if isinstance(function, Weights):
+        map = fitted(
+            function,
+            targets,
+            transform=transform,
+            temperature=temperature,
+            handles=handles,
+            relax=relax,
+            rotations=rotations,
+            scales=scales,
+            shape=(points, as_indices(faces, len(points))),
+        )
+        return map.at(x)
     # Logits of someone's own: the same steps, of which a map would keep the weights.
-    session = Session(posed, **settings)
+    posed = ControlPoints(sources, targets, orientations=orientations(rotations, scales, *sources.shape))
+    session = Session(posed, transform=transform, temperature=temperature, handles=handles, relax=relax)
     if relax:
-        raise ArgumentError(f"relax: expected weights by their name, which are fitted to the shape, found {weights!r}")
-    aimed = session._core.aim(ExactHandles(weights, transform=transform)._core)
-    deformer = Deformer(x, weights, transform=transform)
+        raise ArgumentError("relax: expected weights of this package, found logits of another")
+    aimed = session._core.aim(ExactHandles(function, transform=transform)._core)
+    deformer = Deformer(x, function, transform=transform)
     return deformer.deform(aimed, temperature, rotations=posed.rotations, scales=posed.scales)

@@ -300,6 +300,17 @@ def test_control_points_arrive_unless_they_are_to_be_soft(run, here):
     assert re.search(r"handles +exact\n", said)
 
 
+def test_what_is_relaxed_arrives_elsewhere_by_the_part_that_is_set(run, here):
+    moved = ("deform", "shape.obj", "--points", "points.csv", *CLASSIC, "--move", "top=0.4,0.5,0")
+    ran = {relax: run(*moved, "-o", f"{relax}.obj", "--relax", relax) for relax in ("0", "0.25", "1")}
+    assert all((one.code, one.err) == (0, "") for one in ran.values())
+    assert "temperature 1, relax 0.25\n" in ran["0.25"].out
+    assert "relax" not in ran["0"].out
+    plain, part, full = (nm.read(f"{relax}.obj").positions for relax in ran)
+    assert np.abs(full - plain).max() > 0.01
+    np.testing.assert_allclose(part, plain + 0.25 * (full - plain), rtol=0, atol=1e-6)
+
+
 def test_control_points_that_own_little_are_left_soft_with_what_would_help(run, here):
     (here / "six.csv").write_text(SIX)
     moved = ("deform", "shape.obj", "--points", "six.csv", "--width", "128", "--move", "top=0,0.5,0.2", "--temperature")

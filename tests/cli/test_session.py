@@ -59,8 +59,9 @@ def test_options_go_before_it(run, session):
     told = json.loads(run(*DEFORM, "-o", "out.obj", "--json", *options).out)
     assert (told["handles"], told["transform"], told["temperature"]) == ("soft", "rigid", 1)
     np.testing.assert_allclose(nm.read("out.obj").positions, expected(0.0, "rigid", 1.0), rtol=0, atol=1e-6)
-    told = json.loads(run(*DEFORM, "-o", "exact.obj", "--json", "--handles", "exact", "--seed", "4").out)
-    assert (told["handles"], told["weights"]["seed"]) == ("exact", 4)
+    options = ("--handles", "exact", "--seed", "4", "--relax", "0.5")
+    told = json.loads(run(*DEFORM, "-o", "exact.obj", "--json", *options).out)
+    assert (told["handles"], told["weights"]["seed"], told["relax"]) == ("exact", 4, 0.5)
 
 
 def test_classic_weights_are_inverse_distance_ones(run, session):
@@ -78,6 +79,7 @@ def test_what_an_older_session_does_not_say_is_as_by_default(run, session, here)
     (here / "session.json").write_text(json.dumps(document))
     told = json.loads(run(*DEFORM, "-o", "out.obj", "--json").out)
     assert (told["handles"], told["transform"], told["temperature"]) == ("auto", "rigid", 1)
+    assert told["relax"] == 0
 
 
 @pytest.mark.parametrize(

@@ -169,8 +169,17 @@ type Told = (&'static str, String, Vec<f64>, Vec<usize>, f64);
 impl Map {
     /// Of weights that were fitted already.
     #[staticmethod]
-    fn of(session: &Session, weights: &Weights) -> PyResult<Map> {
-        neuralmls_session::Map::over(session.0.clone(), weights.0.clone()).map(Map).map_err(raised)
+    #[pyo3(signature = (session, weights, shape=None))]
+    fn of(
+        py: Python<'_>,
+        session: &Session,
+        weights: &Weights,
+        shape: Option<GivenShape<'_>>,
+    ) -> PyResult<Map> {
+        let shape = shape.as_ref().map(as_shape).transpose()?;
+        let (session, weights) = (session.0.clone(), weights.0.clone());
+        let made = py.detach(|| neuralmls_session::Map::over_shape(session, weights, shape));
+        made.map(Map).map_err(raised)
     }
 
     #[getter]

@@ -53,14 +53,7 @@ impl Session {
             None => Frame::around(&p, dim),
         };
         let weights = self.settings.weights.fit(&p, dim, frame, shape, progress)?;
-        if self.settings.relax == 0.0 {
-            return Map::of(session, weights);
-        }
-        let shape = shape.ok_or_else(|| {
-            Error::argument("shapes: relax needs at least one shape, whose stiffness decides")
-        })?;
-        let elastic = Elastic::new(&weights, shape)?;
-        Map::elastic(session, weights, Some(elastic))
+        Map::over_shape(session, Arc::new(weights), shape)
     }
 }
 
@@ -104,6 +97,25 @@ impl Map {
     /// Where they are of another kind, or belong to other control points.
     pub fn over(session: Session, weights: Arc<Weights>) -> Result<Map, Error> {
         Map::made(session, weights, None)
+    }
+
+    /// The same, of a session that may have `relax` set, which takes its stiffness from the shape.
+    ///
+    /// # Errors
+    /// As [`Map::over`]; for `relax` without a shape, or in 1D.
+    pub fn over_shape(
+        session: Session,
+        weights: Arc<Weights>,
+        shape: Option<Shape<'_>>,
+    ) -> Result<Map, Error> {
+        if session.settings.relax == 0.0 {
+            return Map::over(session, weights);
+        }
+        let shape = shape.ok_or_else(|| {
+            Error::argument("shapes: relax needs at least one shape, whose stiffness decides")
+        })?;
+        let elastic = Elastic::new(&weights, shape)?;
+        Map::made(session, weights, Some(Arc::new(elastic)))
     }
 
     /// The same, of an elastic shape too.

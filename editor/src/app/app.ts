@@ -46,7 +46,7 @@ export class App {
   constructor(core: Core, defaults: Settings, autosave: Autosave, history: History, store: Store<State>, display: Display) {
     [this.#core, this.#defaults, this.#autosave, this.history, this.store, this.display] = [core, defaults, autosave, history, store, display];
     this.#weights = new Weights(core, history, store, (slot, weights) => display.setWeights(slot, weights));
-    this.#weights.showFrame = (positions, maps) => display.showFrame(positions, maps);
+    this.#weights.showFrame = (slot, positions, maps) => display.showFrame(slot, positions, maps);
     new Advice(core, history, store, this.#weights);
     this.#weights.onWarning = (text) => this.toast("warning", text);
     history.subscribe(() => this.#publish());
@@ -173,6 +173,7 @@ export class App {
 
   async savePicture(): Promise<void> {
     await this.#withShape("Saving", async (opened) => {
+      await this.#weights.settled();
       download(`${stemOf(opened.name)}.png`, await this.display.picture());
     });
   }
@@ -196,6 +197,9 @@ export class App {
     await this.#withShape("Saving", async (opened) => {
       await this.#weights.settled();
       this.#failIfUnfitted();
+      if (this.history.session.settings.relax > 0) {
+        throw new Error("A page is dragged without relax: set it to 0 to save one, or save the bent shape.");
+      }
       const html = await this.display.page(stemOf(opened.name));
       download(`${stemOf(opened.name)}.html`, new Blob([html], { type: "text/html" }));
       this.toast("done", `Saved ${stemOf(opened.name)}.html (${(html.length / 1e6).toFixed(1)} MB)`);

@@ -10,7 +10,7 @@ export interface Display {
   showShape(opened: Opened, files: Files): Promise<{ hasAppearance: boolean }>;
   /** False where the GPU cannot hold them. Undefined: there are none. */
   setWeights(slot: Slot, weights: BoundWeights | undefined): boolean;
-  showFrame(positions: Float64Array, maps: Float64Array): void;
+  showFrame(slot: Slot, positions: Float64Array, maps: Float64Array): void;
   setView(view: View): void;
   focus(what: "all" | "selection"): void;
   /** Ends a drag as if it had not been; false where there was none. */

@@ -8,7 +8,7 @@ import type { Command } from "./history.ts";
 import type { Box } from "./points.ts";
 
 /** Sets one of the settings. Successive ones of the same name, as a slider gives them, are one step. */
-export function set<K extends "kind" | "transform" | "temperature" | "handles">(key: K, value: Settings[K]): Command {
+export function set<K extends "kind" | "transform" | "temperature" | "handles" | "relax">(key: K, value: Settings[K]): Command {
   return {
     label: LABELS[key],
     mergeKey: `set ${key}`,
@@ -16,7 +16,7 @@ export function set<K extends "kind" | "transform" | "temperature" | "handles">(
   };
 }
 
-const LABELS = { kind: "Weights", transform: "Map", temperature: "Temperature", handles: "Handles" } as const;
+const LABELS = { kind: "Weights", transform: "Map", temperature: "Temperature", handles: "Handles", relax: "Relax" } as const;
 
 /** Sets parameters of a kind of weights. */
 export function setWeights<K extends "neural" | "inverse-distance">(kind: K, change: Partial<Weights[K]>): Command {

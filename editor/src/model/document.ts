@@ -37,6 +37,7 @@ export interface SettingsEntry {
   transform: Transform;
   temperature: number;
   handles: HandlesSetting;
+  relax: number;
 }
 
 export type WeightsEntry = { kind: WeightsKind };
@@ -66,8 +67,8 @@ export function toDocument(session: Session, dim: 1 | 2 | 3): SessionDocument {
 }
 
 /** The settings alone. */
-export function settingsEntry({ kind, weights, transform, temperature, handles, others }: Settings): SettingsEntry {
-  return { ...others, weights: { kind, ...weights[kind] }, transform, temperature, handles };
+export function settingsEntry({ kind, weights, transform, temperature, handles, relax, others }: Settings): SettingsEntry {
+  return { ...others, weights: { kind, ...weights[kind] }, transform, temperature, handles, relax };
 }
 
 /** `defaults`: the settings that hold where the document says nothing. */
@@ -89,9 +90,9 @@ export function fromDocument(document: SessionDocument, defaults: Settings): Ses
 }
 
 /** The settings of a file, which has those of one kind of weights; `weights` has those of the others. */
-export function settingsFrom({ weights: used, transform, temperature, handles, ...others }: SettingsEntry, weights: Weights): Settings {
+export function settingsFrom({ weights: used, transform, temperature, handles, relax, ...others }: SettingsEntry, weights: Weights): Settings {
   const { kind, ...parameters } = used;
-  return { kind, weights: { ...weights, [kind]: parameters }, transform, temperature, handles, mirror: null, others };
+  return { kind, weights: { ...weights, [kind]: parameters }, transform, temperature, handles, relax, mirror: null, others };
 }
 
 function editorOf({ editor }: Pick<SessionDocument, "editor">): { mirror?: unknown } {

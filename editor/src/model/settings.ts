@@ -36,6 +36,8 @@ export interface Settings {
   readonly transform: Transform;
   readonly temperature: number;
   readonly handles: HandlesSetting;
+  /** How far the elastic finish goes, 0 to 1. */
+  readonly relax: number;
   /** The axis across which twins are mirrored; null: no mirroring. */
   readonly mirror: Axis | null;
   /** Keys of other programs, kept. */

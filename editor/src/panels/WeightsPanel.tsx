@@ -34,6 +34,16 @@ export function WeightsPanel() {
         onInput={(value) => app.do(set("temperature", value))}
         onDone={seal}
       />
+      <Slider
+        label="Relax"
+        title="Above 0 the shape's own stiffness decides what control points leave open; 1: as far as it goes"
+        value={settings.relax}
+        min={0}
+        max={1}
+        closed
+        onInput={(relax) => app.do(set("relax", relax))}
+        onDone={seal}
+      />
       {settings.kind === "inverse-distance" && (
         <>
           <Slider label="Alpha" title="How fast a control point's weight falls with the distance" value={inverse.alpha} min={0.25} max={6} onInput={(alpha) => app.do(setWeights("inverse-distance", { alpha }))} onDone={seal} />

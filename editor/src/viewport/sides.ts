@@ -1,6 +1,5 @@
 /** The shape as it is shown: once, or with other weights beside it. */
 
-import { Matrix3, Vector3 } from "three";
 import type { Session } from "../model/session.ts";
 import type { Slot } from "../model/slot.ts";
 import type { View } from "../model/view.ts";
@@ -10,6 +9,7 @@ import { type Bound, Motions } from "./motion.ts";
 import { type Drawn, ShapeView } from "./shapeView.ts";
 import type { Space } from "./space.ts";
 import type { Stage } from "./stage.ts";
+import { turnedBy } from "./turned.ts";
 
 interface Side {
   view: ShapeView;
@@ -62,27 +62,20 @@ export class Sides {
     const colours = new Float32Array(bound.ids.flatMap((_, i) => colourOf(i)));
     const fits = side.view.bound.setLogits(bound.logits, bound.ids.length, colours);
     side.motions = fits ? new Motions(bound, this.#space) : undefined;
-    delete side.frame;
     return fits;
   }
 
   /** Shows a frame that the core has computed, `y` (n x 3, file units) with its local maps (n x 9), where the GPU cannot. */
-  showFrame(y: Float64Array, maps: Float64Array): void {
-    const { main } = this.#sides;
-    if (!main) return;
+  showFrame(slot: Slot, y: Float64Array, maps: Float64Array): void {
+    const side = this.#sides[slot];
+    if (!side) return;
     const { centre, half } = this.#space.box;
-    const { points, normals } = main.view.drawn.rest;
+    const { points, normals } = side.view.drawn.rest;
     const places = new Float32Array(3 * points.length);
-    const turned = new Float32Array(3 * points.length);
-    points.forEach((point, i) => {
-      const map = new Matrix3().fromArray(maps, 9 * point);
-      const side = Math.sign(map.determinant()); // of the winding, even under a reflection
-      map.invert(); // read by columns: the inverse transpose, row by row
-      const normal = new Vector3().fromArray(normals, 3 * i).applyMatrix3(map).normalize().multiplyScalar(side);
-      normal.toArray(turned, 3 * i);
-      for (let c = 0; c < 3; c++) places[3 * i + c] = (y[3 * point + c] - centre[c]) / half;
-    });
-    main.frame = { positions: places, normals: turned };
+    for (let i = 0; i < points.length; i++) {
+      for (let c = 0; c < 3; c++) places[3 * i + c] = (y[3 * points[i] + c] - centre[c]) / half;
+    }
+    side.frame = { positions: places, normals: turnedBy(maps, points, normals) };
   }
 
   /** Computes what is shown of a session. `atRest`: as it was. */
@@ -90,8 +83,14 @@ export class Sides {
     for (const slot of ["main", "comparison"] as const) {
       const side = this.#sides[slot];
       if (!side) continue;
-      if (side.motions) side.view.deform(side.motions.of(session, { atRest, colouring: view.colouring }));
-      else if (side.frame) side.view.bound.show(atRest ? side.view.drawn.rest : side.frame);
+      if (side.motions && session.settings.relax === 0) delete side.frame;
+      const frame = atRest ? undefined : side.frame;
+      // The GPU has the colours of what the core computes, too.
+      if (side.motions && !(frame && view.colouring === "material")) {
+        side.view.deform(side.motions.of(session, { atRest, colouring: view.colouring }));
+      }
+      if (frame) side.view.bound.show(frame);
+      else if (!side.motions && side.frame) side.view.bound.show(side.view.drawn.rest);
       side.view.show(side.motions ? view.colouring : "material", view.wireframe);
     }
   }

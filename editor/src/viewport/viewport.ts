@@ -113,8 +113,8 @@ export class Viewport {
   }
 
   /** Shows a frame that the core has computed, `y` (n x 3, file units) with its local maps (n x 9), where the GPU cannot. */
-  showFrame(y: Float64Array, maps: Float64Array): void {
-    this.#sides.showFrame(y, maps);
+  showFrame(slot: Slot, y: Float64Array, maps: Float64Array): void {
+    this.#sides.showFrame(slot, y, maps);
     this.invalidate();
   }
 

@@ -111,7 +111,7 @@ class Client implements Core {
     }
   }
 
-  async deform(session: SessionDocument, options: CallOptions = {}) {
+  async deform(session: SessionDocument, options: CallOptions & { slot?: Slot } = {}) {
     const { positions, maps } = await this.#moved(session, true, options);
     const { dim } = this.#present().opened;
     return { positions: widen(positions, dim), maps: widenMaps(maps!, dim) };
@@ -171,21 +171,21 @@ class Client implements Core {
     return fitter;
   }
 
-  /** The worker whose newest fit is done. */
-  async #fitted(): Promise<Remote> {
+  /** The worker of a slot whose newest fit is done. */
+  async #fitted(slot: Slot = "main"): Promise<Remote> {
     for (;;) {
-      const fitting = this.#fitters.get("main")?.fitting;
+      const fitting = this.#fitters.get(slot)?.fitting;
       if (!fitting) throw new CoreError("there are no weights yet: add a control point");
       const failed = await fitting.then(() => null, (error: unknown) => ({ error }));
-      const fitter = this.#fitters.get("main");
+      const fitter = this.#fitters.get(slot);
       if (fitter?.fitting !== fitting) continue; // a newer one has taken its place
       if (failed) throw failed.error;
       return fitter.remote;
     }
   }
 
-  async #moved(session: SessionDocument, maps: boolean, options: CallOptions): Promise<Moved> {
-    return (await this.#fitted()).call("deform", { session, maps }, options);
+  async #moved(session: SessionDocument, maps: boolean, options: CallOptions & { slot?: Slot }): Promise<Moved> {
+    return (await this.#fitted(options.slot)).call("deform", { session, maps }, options);
   }
 
   /** The core on this thread, for what is too small for a worker. */

@@ -92,7 +92,7 @@ export interface Report {
   warnings: string[];
 }
 
-/** The core's result, for checks, statistics and where the GPU has no float textures. */
+/** The core's result, for what is saved, and for what the GPU cannot show. */
 export interface Deformed {
   /** n x 3 in file units. */
   positions: Float64Array<ArrayBuffer>;
@@ -140,11 +140,12 @@ export interface Core {
   sessionText(session: SessionDocument, fitted: boolean): Promise<string>;
   /**
    * Fits the weights of a session and evaluates them at the points of the open shape. A newer fit of the same slot aborts this one. The fit
-   * of the slot "main" is what the calls below use: with sessions of the same control points at rest and weights.
+   * of the slot "main" is what the calls below use, unless they name another: with sessions of the same control points at rest and weights,
+   * and `relax` above 0 only where it was at the fit.
    */
   fit(session: SessionDocument, options?: CallOptions & { slot?: Slot }): Promise<Fitted>;
   /** Deforms by the last fit; waits for one that is on its way. */
-  deform(session: SessionDocument, options?: CallOptions): Promise<Deformed>;
+  deform(session: SessionDocument, options?: CallOptions & { slot?: Slot }): Promise<Deformed>;
   /** What happens to the control points: cheap. */
   report(session: SessionDocument, options?: CallOptions): Promise<Report>;
   /** What is likely bad about a deformation; nothing where all is well. */

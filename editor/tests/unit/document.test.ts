@@ -19,6 +19,7 @@ const session: Session = {
     weights: { ...defaults.weights, "inverse-distance": { alpha: 2, epsilon: 0.01 } },
     temperature: 0.3,
     handles: 0.25,
+    relax: 0.75,
     mirror: "z",
   },
   frame: { min: [-1, -1, -1], max: [1, 1, 2] },
@@ -48,7 +49,7 @@ describe("a session file", () => {
     expect(document).toMatchObject({ format: "neuralmls-control-points", version: 2, theirs: "kept", editor: { camera: 7, mirror: "z" } });
     expect(document.control_points[0]).toEqual({ name: "seat", position: [0.1, 0.2, 1 / 3], target: [0.1, 0.2, 1 / 3], weight: 0.25, locked: true, group: "legs", mine: [1] });
     expect(document.control_points[1].mirror_of).toBe("seat");
-    expect(document.settings).toMatchObject({ weights: { kind: "inverse-distance", alpha: 2, epsilon: 0.01 }, temperature: 0.3, handles: 0.25 });
+    expect(document.settings).toMatchObject({ weights: { kind: "inverse-distance", alpha: 2, epsilon: 0.01 }, temperature: 0.3, handles: 0.25, relax: 0.75 });
     expect(text.split("\n").filter((line) => line.includes('"name"'))).toHaveLength(2);
   });
 

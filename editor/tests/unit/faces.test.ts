@@ -59,5 +59,5 @@ test.each(faces.sessions)("$name", { timeout: 60_000 }, ({ name, settings, frame
 
 test("all weights are among them", () => {
   expect(new Set(faces.sessions.map(kindOf))).toEqual(new Set(["neural", "shape-aware", "inverse-distance"]));
-  expect(faces.sessions).toHaveLength(20);
+  expect(faces.sessions).toHaveLength(22);
 });

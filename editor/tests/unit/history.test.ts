@@ -27,6 +27,7 @@ describe("history", () => {
       toggleLock([1]),
       set("temperature", 0.5),
       set("handles", 0.5),
+      set("relax", 0.5),
       set("kind", "inverse-distance"),
       setWeights("inverse-distance", { alpha: 2 }),
       setWeights("neural", { seed: 3 }),
