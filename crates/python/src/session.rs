@@ -2,7 +2,6 @@
 
 use neuralmls_core::memory::copy_of;
 use neuralmls_core::progress::Progress;
-use neuralmls_core::Pose;
 use neuralmls_session::{Advice, Error, Held};
 use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
