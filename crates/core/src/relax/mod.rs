@@ -199,11 +199,13 @@ impl Elastic {
         let mut y_and_r = start::start(&self.rest, &self.body, &frame, rotations.collect());
         let force = solve::solve(&self.rest, &self.body, &self.system, &frame, &mut y_and_r);
         let (global, _, _) = nodes.global(pose)?;
-        let plate = self.plate.as_ref().map(|plate| plate.bent(&landed, &embedded(&global, self.dim)));
+        // It knows nothing of how control points are oriented.
+        let plate = self.plate.as_ref().filter(|_| held.iter().all(Option::is_none));
+        let plate = plate.map(|plate| plate.bent(&landed, &embedded(&global, self.dim)));
         let share = plate.as_ref().map_or(0.0, |plate| {
             1.0 / (1.0 + (FORETELLS * (plate.error + ROUNDING) / (force + ROUNDING)).powi(PASSAGE))
         });
-        let solve::Moved { y, maps, .. } = y_and_r;
+        let solve::Moved { y, maps } = y_and_r;
         Ok(Some(Relaxed { x: self.nodes.clone(), y, maps, share, plate }))
     }
 

@@ -1,4 +1,5 @@
-//! The thin plate through the control points, and how well it foretells each of them from the others.
+//! The thin plate through the control points, and how well it foretells each of them from the others. There is none where control points are
+//! oriented, which it could not follow.
 //!
 //! ```text
 //! h(x) = G(x) + sum_i c_i |x - p_i| + A x + b,     h(p_i) = q_i
