@@ -70,7 +70,7 @@ class ControlPoints:
         labels = [f"p{i + 1}" for i in range(count)] if names is None else list(names)
         oriented = [None] * count if orientations is None else list(orientations)
         closely = np.ones(count) if weights is None else np.asarray(weights, np.float64)
-        pieces = [None] * count if groups is None else list(groups)
+        pieces: list[str | None] = [None] * count if groups is None else list(groups)
         stay = np.zeros(count, bool) if locked is None else np.asarray(locked)
         if stay.dtype != bool:
             raise ControlPointError(f"locked: expected true or false for each control point, found {locked!r}")
