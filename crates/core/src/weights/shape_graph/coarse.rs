@@ -11,7 +11,7 @@ use super::graph::links_of;
 use super::links::Links;
 use super::near::Near;
 use super::paths::{Neighbours, Ordered, AROUND, LEAST, MOST_AROUND};
-use super::{attached, Position};
+use super::{attached, squared, Position};
 
 /// A place that is no farther from a chosen one is in the same place.
 const SAME: f64 = 1e-9;
@@ -68,20 +68,29 @@ impl Cells {
 
     /// Gives what is nearer to one of the `starts`, each a distance, a node and whose it is, to that.
     fn grow(&mut self, links: &Links, starts: Vec<(f64, u32, u32)>) {
-        let mut queue: BinaryHeap<_> =
-            starts.into_iter().map(|(away, node, owner)| Reverse((Ordered(away), node, owner))).collect();
-        let mut steps = Vec::new();
-        while let Some(Reverse((Ordered(away), node, owner))) = queue.pop() {
-            if away >= self.far[node as usize] {
+        let Cells { neighbours, far, owner } = self;
+        let mut queue = BinaryHeap::new();
+        let mut found = |queue: &mut BinaryHeap<_>, away: f64, node: u32, whose: u32| {
+            let (far, owner) = (&mut far[node as usize], &mut owner[node as usize]);
+            if (away, whose) < (*far, *owner) {
+                (*far, *owner) = (away, whose);
+                queue.push(Reverse((Ordered(away), node, whose)));
+            }
+            (*far, *owner) == (away, whose)
+        };
+        for (away, node, whose) in starts {
+            found(&mut queue, away, node, whose);
+        }
+        while let Some(Reverse((Ordered(away), node, whose))) = queue.pop() {
+            // One that is nearer came in between.
+            if !found(&mut queue, away, node, whose) {
                 continue;
             }
-            (self.far[node as usize], self.owner[node as usize]) = (away, owner);
-            self.neighbours.two_steps(links, node, &mut steps);
-            for &(other, length) in &steps {
-                if away + length < self.far[other as usize] {
-                    queue.push(Reverse((Ordered(away + length), other, owner)));
-                }
-            }
+            let x = &links.nodes[node as usize];
+            neighbours.two_steps(node, |other| {
+                let length = squared(x, &links.nodes[other as usize]).sqrt().max(LEAST);
+                found(&mut queue, away + length, other, whose);
+            });
         }
     }
 

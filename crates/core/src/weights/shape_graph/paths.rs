@@ -27,6 +27,13 @@ pub(super) struct Reach {
     pub(super) apart: Vec<f64>,
 }
 
+impl Reach {
+    /// How far a node is from its nearest control point, as a part of the way to the next.
+    pub(super) fn part_of_way(&self, node: usize) -> f64 {
+        self.far[node] / self.second[node]
+    }
+}
+
 /// The shortest paths from each node to the two nearest of `p`, and between these. Those of a control point in the midst of a body lead
 /// straight to the surface around it.
 ///
@@ -34,30 +41,32 @@ pub(super) struct Reach {
 pub(super) fn reach(links: &Links, near: &Near, p: &[Position]) -> Reach {
     let neighbours = Neighbours::new(links);
     let count = links.nodes.len();
+    // The two shortest that were found yet, of different control points: what is longer need not wait in the queue.
     let mut of_nodes = vec![[(f64::INFINITY, u32::MAX); 2]; count];
     let mut queue = BinaryHeap::new();
-    let around = attached(near, p, AROUND, MOST_AROUND);
-    for &(point, node, away) in &around {
-        queue.push(Reverse((Ordered(away.max(LEAST)), node, point)));
+    let found = |queue: &mut BinaryHeap<_>, of_node: &mut _, node: u32, way: (f64, u32)| {
+        if shorter(of_node, way) {
+            queue.push(Reverse((Ordered(way.0), node, way.1)));
+        }
+    };
+    for (point, node, away) in attached(near, p, AROUND, MOST_AROUND) {
+        found(&mut queue, &mut of_nodes[node as usize], node, (away.max(LEAST), point));
     }
-    let mut steps = Vec::new();
+    let (mut seen, mut time) = (vec![0_u32; count], 0);
     while let Some(Reverse((Ordered(away), node, point))) = queue.pop() {
-        // The first to come is the nearest; the second is of another control point.
-        let [first, second] = &mut of_nodes[node as usize];
-        if first.1 == u32::MAX {
-            *first = (away, point);
-        } else if first.1 != point && second.1 == u32::MAX {
-            *second = (away, point);
-        } else {
+        // Others that are shorter came in between.
+        if !of_nodes[node as usize].contains(&(away, point)) {
             continue;
         }
-        neighbours.two_steps(links, node, &mut steps);
-        for &(other, length) in &steps {
-            let [first, second] = of_nodes[other as usize];
-            if first.1 == u32::MAX || first.1 != point && second.1 == u32::MAX {
-                queue.push(Reverse((Ordered(away + length), other, point)));
+        time += 1;
+        seen[node as usize] = time;
+        let x = &links.nodes[node as usize];
+        neighbours.two_steps(node, |other| {
+            if std::mem::replace(&mut seen[other as usize], time) != time {
+                let length = squared(x, &links.nodes[other as usize]).sqrt().max(LEAST);
+                found(&mut queue, &mut of_nodes[other as usize], other, (away + length, point));
             }
-        }
+        });
     }
     // The shortest path to another of them passes a node to which both are nearer than any other.
     let mut apart = vec![f64::INFINITY; p.len()];
@@ -101,21 +110,29 @@ impl Neighbours {
         &self.others[self.starts[node as usize] as usize..self.starts[node as usize + 1] as usize]
     }
 
-    /// Each node within two links, once, and how far it is.
-    pub(super) fn two_steps(&self, links: &Links, node: u32, steps: &mut Vec<(u32, f64)>) {
-        steps.clear();
-        let x = &links.nodes[node as usize];
+    /// Each node within two links, some more than once.
+    pub(super) fn two_steps(&self, node: u32, mut step: impl FnMut(u32)) {
         for &one in self.of(node) {
-            steps.push((one, 0.0));
-            steps.extend(self.of(one).iter().map(|&two| (two, 0.0)));
-        }
-        steps.sort_unstable_by_key(|(other, _)| *other);
-        steps.dedup_by_key(|(other, _)| *other);
-        steps.retain(|(other, _)| *other != node);
-        for (other, length) in steps.iter_mut() {
-            *length = squared(x, &links.nodes[*other as usize]).sqrt().max(LEAST);
+            step(one);
+            self.of(one).iter().for_each(|&two| step(two));
         }
     }
+}
+
+/// Puts a way among the two shortest of different control points; whether it is one of them.
+fn shorter(best: &mut [(f64, u32); 2], way: (f64, u32)) -> bool {
+    let [first, second] = best;
+    if way < *first {
+        if way.1 != first.1 {
+            *second = *first;
+        }
+        *first = way;
+    } else if way.1 != first.1 && way < *second {
+        *second = way;
+    } else {
+        return false;
+    }
+    true
 }
 
 /// A finite distance, as a queue orders it.

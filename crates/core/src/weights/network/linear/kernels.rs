@@ -13,8 +13,26 @@ multiversion! {
     ) = update_body
 }
 
+/// As many rows at a time as there are registers for. The sums are the same.
 #[inline(always)]
 fn update_body<L: Lanes>(
+    state: &mut [Aligned],
+    lanes: usize,
+    blocks: &[usize],
+    error: &[Aligned],
+    input: &[Aligned],
+    m: usize,
+    rates: Rates,
+) {
+    if L::REGISTERS >= 32 {
+        update_of::<L, 8>(state, lanes, blocks, error, input, m, rates);
+    } else {
+        update_of::<L, 4>(state, lanes, blocks, error, input, m, rates);
+    }
+}
+
+#[inline(always)]
+fn update_of<L: Lanes, const TILE: usize>(
     state: &mut [Aligned],
     lanes: usize,
     blocks: &[usize],
@@ -27,23 +45,25 @@ fn update_body<L: Lanes>(
     let (weights, moments) = state.split_at_mut(rows * lanes);
     for (c, input) in input.chunks_exact(m).take(lanes).enumerate() {
         for &block in blocks {
-            let half = block % (WIDTH / ROWS) * ROWS;
             let error = &error[block / (WIDTH / ROWS) * m..][..m];
-            let mut gradient = [L::splat(0.0); ROWS];
-            for (x, e) in input.iter().zip(error) {
-                let x = L::load(&x.0);
-                let e: &[f32; ROWS] = e.0[half..].first_chunk().expect("half a lane");
-                for r in 0..ROWS {
-                    gradient[r] = L::splat(e[r]).mul_add(x, gradient[r]);
-                }
-            }
             let (weights, more) = weights[c * rows + ROWS * block..].split_at_mut(ROWS);
             let (moments, further) = moments[2 * (c * rows + ROWS * block)..].split_at_mut(2 * ROWS);
             prefetch_next(more, rows - ROWS, ROWS);
             prefetch_next(further, 2 * (rows - ROWS), 2 * ROWS);
             let (first, second) = moments.split_at_mut(ROWS);
-            for r in 0..ROWS {
-                rates.descend(&mut weights[r].0, &mut first[r].0, &mut second[r].0, gradient[r]);
+            for start in (0..ROWS).step_by(TILE) {
+                let row = block % (WIDTH / ROWS) * ROWS + start;
+                let mut gradient = [L::splat(0.0); TILE];
+                for (x, e) in input.iter().zip(error) {
+                    let x = L::load(&x.0);
+                    let e: &[f32; TILE] = e.0[row..].first_chunk().expect("part of a lane");
+                    for r in 0..TILE {
+                        gradient[r] = L::splat(e[r]).mul_add(x, gradient[r]);
+                    }
+                }
+                for (r, gradient) in (start..).zip(gradient) {
+                    rates.descend(&mut weights[r].0, &mut first[r].0, &mut second[r].0, gradient);
+                }
             }
         }
     }
@@ -62,25 +82,24 @@ multiversion! {
     pub(super) fn product(weights: &[Aligned], lanes: usize, input: &[Aligned], m: usize, z: &mut [Aligned]) = product_body
 }
 
-/// 4 rows and some points at a time: as many as there are registers for.
+/// Some rows and points at a time: as many as there are registers for.
 #[inline(always)]
 fn product_body<L: Lanes>(weights: &[Aligned], lanes: usize, input: &[Aligned], m: usize, z: &mut [Aligned]) {
     if L::REGISTERS >= 32 {
-        product_of::<L, 5>(weights, lanes, input, m, z);
+        product_of::<L, 4, 5>(weights, lanes, input, m, z);
     } else {
-        product_of::<L, 4>(weights, lanes, input, m, z);
+        product_of::<L, 2, 3>(weights, lanes, input, m, z);
     }
 }
 
 #[inline(always)]
-fn product_of<L: Lanes, const POINTS: usize>(
+fn product_of<L: Lanes, const TILE: usize, const POINTS: usize>(
     weights: &[Aligned],
     lanes: usize,
     input: &[Aligned],
     m: usize,
     z: &mut [Aligned],
 ) {
-    const TILE: usize = 4;
     let rows = weights.len() / lanes;
     for i in (0..m).step_by(POINTS) {
         // A last, smaller tile repeats its last point: the same sum is written again.
