@@ -263,7 +263,11 @@ def _of_session(title: str | None, settings: Mapping[str, Any]) -> Method:
         def positions(q: ArrayLike) -> Array:
             return np.asarray(moved(q).frame(of_vertices)[0], dtype=np.float64)
 
-        return Bound(positions, lambda q: moved(q).at)
+        def space(q: ArrayLike) -> SpaceMap:
+            map = moved(q)
+            return lambda x: np.asarray(map.at(x), dtype=np.float64)
+
+        return Bound(positions, space)
 
     return Method(title or title_of(settings), bind, settings)
 

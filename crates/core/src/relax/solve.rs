@@ -195,8 +195,8 @@ fn attached(rest: &Rest, body: &Body, posed: &Posed<'_>, moved: &Moved, firmness
     let soft = (SOFT * rest.apart).powi(2);
     let mut all = vec![Attached::default(); rest.nodes.len()];
     let (mut sum, mut areas) = (0.0, 0.0);
-    for i in m..rest.nodes.len() {
-        let (own, map) = (&mut all[i], &moved.maps[i]);
+    for (i, own) in all.iter_mut().enumerate().skip(m) {
+        let map = &moved.maps[i];
         let turned = apply(map, &rest.nodes[i]);
         for (j, w) in posed.w[m * i..][..m].iter().enumerate() {
             let (p, q) = (&rest.nodes[j], &posed.q[j]);
