@@ -4,6 +4,7 @@ use super::solve::{Moved, Posed};
 use super::*;
 use crate::aim::Handles;
 use crate::weights::inverse_distance::InverseDistance;
+use crate::{Deformer, Pose, Transform};
 use nalgebra::{DMatrix, Matrix3};
 
 /// A bar of square rings along the first axis, from -1 to 1.
