@@ -11,7 +11,7 @@ from itertools import product
 
 import numpy as np
 from shape_aware import Found, Given
-from shape_logits import followed, shape_logits
+from shape_logits import shape_logits
 from surface_graph import Reach, SurfaceGraph
 
 import neuralmls as nm
@@ -36,7 +36,8 @@ def errors(path: str, count: int) -> list[float]:
     found = []
     for hold, held in SETTINGS:
         met = graph.first_met(unit[chosen], along, hold=hold, held=held)[nodes]
-        logits = followed(shape_logits(Found(unit, met, reach), unit[chosen]), distances)  # type: ignore[arg-type]
+        whole = Found(unit, met, reach)
+        logits = shape_logits(whole, unit[chosen], distances=distances)  # type: ignore[arg-type]
         deformer = nm.Deformer(x, Given(x[chosen], logits))
         off = [np.linalg.norm(deformer.deform(poses.poses[k][chosen]) - poses.poses[k], axis=1).mean() for k in few]
         found.append(100 * float(np.mean(off) / np.linalg.norm(high - low)))

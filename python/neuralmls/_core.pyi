@@ -44,6 +44,8 @@ class Weights:
         p: _Doubles, bounds: _Doubles | None, shape: _Shape | None, settings: str, progress: _Progress
     ) -> Weights: ...
     @staticmethod
+    def labels(p: _Doubles, bounds: _Doubles | None, shape: _Shape) -> list[_Doubles]: ...
+    @staticmethod
     def of_layers(
         p: _Doubles,
         centre: Sequence[float],

@@ -77,6 +77,22 @@ impl Weights {
             .map(Weights::of)
     }
 
+    /// What shape-aware weights are taught: places of the shape, k x d, and the logits of the control points there, k x m.
+    #[staticmethod]
+    fn labels<'py>(
+        py: Python<'py>,
+        p: PyReadonlyArray2<'_, f64>,
+        bounds: Option<PyReadonlyArray2<'_, f64>>,
+        shape: GivenShape<'_>,
+    ) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
+        let ([m, dim], p) = ([p.shape()[0], p.shape()[1]], p.as_slice()?);
+        let shape = as_shape(&shape)?;
+        let frame = frame(bounds, shape.x, dim)?;
+        let labels = neuralmls_core::labels(p, dim, frame, shape, &mut |_| true)
+            .map_err(|error| from_core(error, None))?;
+        Ok([table(py, labels.x, dim)?, table(py, labels.logits, m)?])
+    }
+
     /// A network of given parameters: three (weight, bias), and the frequencies of Fourier features (0 rows without).
     #[staticmethod]
     fn of_layers(
@@ -100,7 +116,8 @@ impl Weights {
         let network = Network::new(dim, frame, frequencies.as_slice()?.to_vec(), layers)
             .map_err(|error| from_core(error, None))?;
         let control_points = p.as_slice()?.to_vec();
-        let trained = Trained { control_points, network, losses: Vec::new(), loss: f64::NAN };
+        let trained =
+            Trained { control_points, network, losses: Vec::new(), loss: f64::NAN, missed: Vec::new() };
         Ok(Weights::of(neuralmls_core::Weights::Neural(trained)))
     }
 

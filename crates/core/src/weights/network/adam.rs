@@ -5,7 +5,9 @@
 use crate::machine::simd::{Lanes, WIDTH};
 
 const BETA_1: f64 = 0.9;
-const BETA_2: f64 = 0.999;
+pub(super) const BETA_2: f64 = 0.999;
+/// Of a training in batches, whose gradients change. With less, networks come nearer to their labels, and bend more (docs/notes/shape-aware.md).
+pub(super) const BETA_2_IN_BATCHES: f64 = 0.99;
 const EPSILON: f32 = 1e-8;
 
 /// Denormal numbers, near the smallest that there are, make a processor a hundred times slower, and a moment without further gradients
@@ -23,16 +25,19 @@ pub(super) struct Rates {
     rate: f32,
     /// `sqrt((1 - beta_2) / (1 - beta_2^t))`.
     correction: f32,
+    /// How much of the second moments is kept.
+    beta_2: f32,
     /// Whether first moments are dusted.
     dusting: bool,
 }
 
 impl Rates {
     /// Of the `step`-th step, counted from 1.
-    pub(super) fn new(rate: f64, step: i32) -> Rates {
+    pub(super) fn new(rate: f64, step: i32, beta_2: f64) -> Rates {
         Rates {
             rate: (rate * (1.0 - BETA_1) / (1.0 - BETA_1.powi(step))) as f32,
-            correction: ((1.0 - BETA_2) / (1.0 - BETA_2.powi(step))).sqrt() as f32,
+            correction: ((1.0 - beta_2) / (1.0 - beta_2.powi(step))).sqrt() as f32,
+            beta_2: beta_2 as f32,
             dusting: step % DUSTING == 0,
         }
     }
@@ -50,7 +55,7 @@ impl Rates {
         if self.dusting {
             m = L::select(m.abs().less(L::splat(DUST)), L::splat(0.0), m);
         }
-        let v = gradients.mul_add(gradients, L::splat(BETA_2 as f32).mul(L::load(second)));
+        let v = gradients.mul_add(gradients, L::splat(self.beta_2).mul(L::load(second)));
         let v = v.max(L::splat(LEAST_SQUARE));
         // A quotient by Newton's method from an estimate: an exact one takes longer than all the rest.
         let divisor = v.sqrt().mul_add(L::splat(self.correction), L::splat(EPSILON));

@@ -129,17 +129,17 @@ impl Linear {
         for (block, awake) in self.awake.iter_mut().enumerate() {
             *awake |= has_error(error, block);
         }
-        let mut z = Activations::zeros(self.rows.len(), m);
+        let mut z = Activations::zeros(self.rows.len(), next_input.points);
         let (size, groups) = (GROUP * 3 * self.lanes, self.groups(m));
         let (simd, lanes, rectified, awake) = (self.simd, self.lanes, self.rectified, &self.awake);
-        let in_group = GROUP / WIDTH * m;
+        let (in_group, in_next) = (GROUP / WIDTH * m, GROUP / WIDTH * next_input.points);
         for_each_block_pair(
             &mut self.state,
             groups * size,
             &mut z.lanes,
-            groups * in_group,
+            groups * in_next,
             |task, state, z| {
-                for (k, (state, z)) in state.chunks_mut(size).zip(z.chunks_mut(in_group)).enumerate() {
+                for (k, (state, z)) in state.chunks_mut(size).zip(z.chunks_mut(in_next)).enumerate() {
                     let group = groups * task + k;
                     let error = &error.lanes[in_group * group..];
                     let awake = awake[GROUP / ROWS * group..].iter().take(GROUP / ROWS);

@@ -1,8 +1,16 @@
 //! Points of a shape that a network is taught with besides the control points: how likely each control point is there.
 
+use super::dense;
+use super::parameters::Parameters;
 use crate::check::check_points;
 use crate::error::Error;
 use crate::machine::random::Random;
+
+/// Its cross-entropy less the label's own: a place at which it is more was not learned. A place that is to have 0.8 of the weight of one
+/// of two control points, and has half of it, is at 0.06 after the labels are softened.
+const UNLEARNED: f64 = 0.02;
+/// The most places that were not learned, a step: they shall not outweigh the rest.
+const AGAIN: usize = 16;
 
 /// Points with soft labels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,6 +19,8 @@ pub struct Samples<'a> {
     pub x: &'a [f64],
     /// For each of them the probabilities of the m control points, which sum to 1.
     pub labels: &'a [f32],
+    /// The first so many are looked at in turn; the others only where the network turns out not to have learned them.
+    pub spread: usize,
     /// How many of them a step of the training looks at, beside all of the control points.
     pub batch: usize,
 }
@@ -20,6 +30,9 @@ pub(super) struct Lessons {
     pub(super) points: Vec<f64>,
     /// Points x m.
     pub(super) labels: Vec<f32>,
+    /// Control points and samples that are looked at in turn; the rest is looked at again only.
+    spread: usize,
+    dim: usize,
     batches: Batches,
 }
 
@@ -28,7 +41,7 @@ impl Lessons {
     pub(super) fn of_control_points(p: &[f64], dim: usize) -> Lessons {
         let m = p.len() / dim;
         let labels = (0..m * m).map(|at| f32::from(u8::from(at / m == at % m))).collect();
-        Lessons { points: p.to_vec(), labels, batches: Batches::new(m, 0, 0, 0) }
+        Lessons { points: p.to_vec(), labels, batches: Batches::new(m, 0, 0, 0), spread: m, dim }
     }
 
     /// Of control points and samples; `order` says which control point each label will be of.
@@ -58,8 +71,26 @@ impl Lessons {
         let mut lessons = self;
         lessons.points.extend_from_slice(samples.x);
         lessons.labels.extend(samples.labels.chunks_exact(m).flat_map(|row| order.iter().map(|&i| row[i])));
-        lessons.batches = Batches::new(m, n, samples.batch, seed);
+        lessons.batches = Batches::new(m, samples.spread.min(n), samples.batch, seed);
+        lessons.spread = m + samples.spread.min(n);
         Ok(lessons)
+    }
+
+    /// Whether a step looks at a part of the points.
+    pub(super) fn in_batches(&self) -> bool {
+        self.batches.size > 0
+    }
+
+    /// Has the steps that follow look at what `network` has not learned, too, of the places that are not looked at in turn.
+    pub(super) fn look_again(&mut self, network: &Parameters) {
+        let m = network.outputs();
+        let further = &self.points[self.dim * self.spread..];
+        let logits = dense::logits(network, further, &mut |_| true).expect("nobody stops it");
+        let labels = self.labels[m * self.spread..].chunks_exact(m);
+        let unlearned =
+            |(_, (logits, labels)): &(usize, (&[f32], &[f32]))| divergence(logits, labels) > UNLEARNED;
+        let places = (self.spread..).zip(logits.chunks_exact(m).zip(labels)).filter(unlearned);
+        self.batches.again = places.map(|(place, _)| place).collect();
     }
 
     /// The numbers of the points that the next step looks at.
@@ -68,12 +99,26 @@ impl Lessons {
     }
 }
 
+/// The Kullback-Leibler divergence of the weights of some logits from the labels.
+fn divergence(logits: &[f32], labels: &[f32]) -> f64 {
+    let most = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let sum: f64 = logits.iter().map(|logit| f64::from(logit - most).exp()).sum();
+    let of_one = |(logit, label): (&f32, &f32)| match f64::from(*label) {
+        0.0 => 0.0,
+        label => label * (label.ln() - f64::from(logit - most) + sum.ln()),
+    };
+    logits.iter().zip(labels).map(of_one).sum()
+}
+
 /// All control points, and of the samples so many at a time, in an order that is drawn anew after each pass through all.
 struct Batches {
     control_points: usize,
     order: Vec<usize>,
     at: usize,
     size: usize,
+    /// Places to look at again, and how many steps did.
+    again: Vec<usize>,
+    looked: usize,
     random: Random,
 }
 
@@ -81,7 +126,8 @@ impl Batches {
     fn new(control_points: usize, samples: usize, size: usize, seed: u64) -> Batches {
         let order: Vec<usize> = (control_points..control_points + samples).collect();
         let size = size.min(samples);
-        Batches { control_points, at: order.len(), order, size, random: Random::new(seed) }
+        let (again, looked, random) = (Vec::new(), 0, Random::new(seed));
+        Batches { control_points, at: order.len(), order, size, again, looked, random }
     }
 
     fn next(&mut self) -> Vec<usize> {
@@ -91,7 +137,10 @@ impl Batches {
         }
         let chosen = &self.order[self.at..self.at + self.size];
         self.at += self.size;
-        (0..self.control_points).chain(chosen.iter().copied()).collect()
+        let count = self.again.len().min(AGAIN);
+        let again = self.again.iter().cycle().skip(self.looked % self.again.len().max(1)).take(count);
+        self.looked += count;
+        (0..self.control_points).chain(chosen.iter().copied()).chain(again.copied()).collect()
     }
 }
 
@@ -110,7 +159,9 @@ pub(super) fn lexicographic_order(p: &[f64], dim: usize) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::parameters::Layer;
     use super::*;
+    use crate::geometry::Frame;
 
     #[test]
     fn every_step_sees_the_control_points_and_every_pass_each_sample_once() {
@@ -133,8 +184,26 @@ mod tests {
     }
 
     #[test]
+    fn what_a_network_has_not_learned_is_looked_at_again() {
+        let labels = [0.5, 0.5, 0.9, 0.1, 0.45, 0.55, 0.0, 1.0];
+        let samples = Samples { x: &[0.1, 0.2, 0.3, 0.4], labels: &labels, spread: 1, batch: 1 };
+        let lessons = Lessons::of_control_points(&[0.0, 1.0], 1).with(samples, 1, &[0, 1], 0);
+        let mut lessons = lessons.unwrap();
+        assert_eq!((lessons.next(), lessons.next()), (vec![0, 1, 2], vec![0, 1, 2]));
+        // A network that says nothing of any place.
+        let layer = |inputs: usize, outputs: usize| Layer {
+            weight: vec![0.0; inputs * outputs],
+            bias: vec![0.0; outputs],
+        };
+        let network =
+            Parameters::new(1, Frame::IDENTITY, Vec::new(), [layer(1, 1), layer(1, 1), layer(1, 2)]).unwrap();
+        lessons.look_again(&network);
+        assert_eq!(lessons.next(), [0, 1, 2, 3, 5]);
+    }
+
+    #[test]
     fn labels_follow_the_order_of_the_control_points() {
-        let samples = Samples { x: &[0.5], labels: &[0.25, 0.75], batch: 1 };
+        let samples = Samples { x: &[0.5], labels: &[0.25, 0.75], spread: 1, batch: 1 };
         let lessons = Lessons::of_control_points(&[0.0, 1.0], 1).with(samples, 1, &[1, 0], 0).unwrap();
         assert_eq!(lessons.labels[4..], [0.75, 0.25]);
     }
@@ -142,7 +211,7 @@ mod tests {
     #[test]
     fn refuses_labels_that_are_no_probabilities() {
         let says = |labels: &[f32]| {
-            let samples = Samples { x: &[0.5], labels, batch: 1 };
+            let samples = Samples { x: &[0.5], labels, spread: 1, batch: 1 };
             let lessons = Lessons::of_control_points(&[0.0, 1.0], 1).with(samples, 1, &[0, 1], 0);
             lessons.err().expect("refused").to_string()
         };

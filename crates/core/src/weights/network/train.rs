@@ -27,6 +27,8 @@ use trainer::{Losses, Trainer};
 const SMALL_LOSS: f64 = 0.105;
 /// From so many control points on, the default training begins at an output layer in closed form (studies/many_points.py).
 const MANY: usize = 64;
+/// When a training in batches looks again for what it has not learned, in eighths of it.
+const LOOKS: [usize; 3] = [4, 6, 7];
 /// How much faster neurons that begin at samples change than others.
 const GAIN: f32 = 4.0;
 /// Most control points: beyond, every layer of the paper's network is too small for them.
@@ -93,6 +95,9 @@ pub struct Trained {
     pub losses: Vec<f64>,
     /// The mean cross-entropy after the last.
     pub loss: f64,
+    /// Of shape-aware weights: the part of the shape that was to follow each control point and does not (`shape_graph`). Empty of others, and of
+    /// maps that were saved before it was measured.
+    pub missed: Vec<f64>,
 }
 
 impl Trained {
@@ -112,8 +117,8 @@ impl Trained {
 
 /// Makes a network from a seed and trains it on the control points `p`, and on `samples` of a shape where there are any.
 ///
-/// With samples, each step sees all of the control points and a batch of the samples; the losses are those of a batch, and the
-/// first layer's neurons begin where the samples are ([`bend_at`]).
+/// With samples, each step sees all of the control points and a batch of the samples, and in the second half some of those further ones that
+/// the network has not learned; the losses are those of a batch, and the first layer's neurons begin where the samples are ([`bend_at`]).
 ///
 /// The result does not depend on the order of the control points (but that its outputs are in their order), nor on the number of
 /// threads.
@@ -150,7 +155,7 @@ pub fn fit(
     let (inputs, width, m) = (features::width(dim, &frequencies), training.width, order.len());
     let mut layers = [random.layer(inputs, width), random.layer(width, width), random.layer(width, m)];
     if let Some(samples) = samples {
-        bend_at(&mut layers[0], samples.x, dim, &frame);
+        bend_at(&mut layers[0], &samples.x[..dim * samples.spread], dim, &frame);
     }
     let mut network = Parameters::new(dim, frame, frequencies, layers)?;
     if m >= MANY && samples.is_none() && matches!(training.schedule, Schedule::UntilSmall { .. }) {
@@ -223,6 +228,7 @@ fn teach(
             format!("expected 1 to {}, found {most}", Training::STEPS.end()),
         ));
     }
+    let batches = lessons.in_batches();
     on_a_working_thread(progress, |progress| {
         let mut trainer = Trainer::new(network, lessons);
         let mut losses = Vec::new();
@@ -240,6 +246,9 @@ fn teach(
             if step == end || one {
                 break mean;
             }
+            if batches && LOOKS.iter().any(|eighths| step == end * eighths / 8) {
+                trainer.look_again();
+            }
             losses.push(mean);
             trainer.step(match schedule {
                 Schedule::Cosine(_) => 0.5 * rate * (1.0 + (PI * step as f64 / end as f64).cos()),
@@ -248,7 +257,8 @@ fn teach(
             });
         };
         report(progress, 1.0)?;
-        Ok(Trained { control_points: p.to_vec(), network: Network::from(trainer.finish()), losses, loss })
+        let (control_points, network) = (p.to_vec(), Network::from(trainer.finish()));
+        Ok(Trained { control_points, network, losses, loss, missed: Vec::new() })
     })
 }
 

@@ -9,6 +9,7 @@ use crate::check::check_points;
 use crate::error::Error;
 use crate::geometry::{placement, Frame};
 use crate::machine::progress::{report, Progress};
+use crate::softmax;
 use crate::weights::network::{self, Samples, Schedule, Trained, Training};
 
 /// Of what walks say.
@@ -26,16 +27,18 @@ const SOFTNESS: f32 = 2.0;
 const SAMPLES: usize = 2048;
 /// Nodes from which samples are chosen: every so many-th of more.
 const CANDIDATES: usize = 8192;
-/// Samples a step.
-const BATCH: usize = 128;
-const WIDTH: usize = 256;
+/// Samples a step. With the width, and what Adam keeps, chosen on poses, chairs and airplanes (docs/notes/shape-aware.md).
+const BATCH: usize = 64;
+const WIDTH: usize = 192;
 const STEPS: usize = 1000;
 const RATE: f64 = 8e-3;
-/// What is nearer to a control point along the shape than this part of the way to any other follows it: has at least [`OWN`] of the weight.
-const NEAR: f64 = 0.5;
+/// What is nearer to a control point along the shape than this part of the way to any other follows it.
+const LAW: f64 = 0.5;
+/// It is taught to have at least [`OWN`] of the weight a little farther, as the network does not learn it exactly.
+const NEAR: f64 = 0.55;
 /// Up to this part of the way, less and less.
 const NEAR_END: f64 = 0.75;
-const OWN: f64 = 0.55;
+const OWN: f64 = 0.8;
 /// A distance: what is nearer is on the control point.
 const LEAST: f64 = 1e-6;
 /// Of walks: fewer are rounding.
@@ -73,14 +76,33 @@ pub(crate) fn fit(
     seed: u64,
     progress: &mut Progress<'_>,
 ) -> Result<Trained, Error> {
-    let Labels { x, logits } = labels(p, dim, frame, shape, &mut |done| progress(BEFORE * done))?;
-    let labels = softened(&logits, p.len() / dim);
-    let samples = Samples { x: &x, labels: &labels, batch: BATCH };
+    let (m, taught) = (p.len() / dim, taught(p, dim, frame, shape, &mut |done| progress(BEFORE * done))?);
+    let Labels { x, logits } = taught.labels;
+    let labels = softened(&logits, m);
+    let samples = Samples { x: &x, labels: &labels, spread: taught.spread, batch: BATCH };
     let schedule = Schedule::Cosine(STEPS);
     let training = Training { width: WIDTH, schedule, rate: RATE, seed, fourier_sigma: None };
     let mut rest = |done: f64| progress(BEFORE + (1.0 - BEFORE) * done);
     let trained = network::fit(p, Some(samples), dim, frame, &training, &mut rest)?;
-    Ok(Trained { network: trained.network.sharpened(SOFTNESS), ..trained })
+    let network = trained.network.sharpened(SOFTNESS);
+    let missed = missed(&network, &x[..dim * taught.spread], &logits, m)?;
+    Ok(Trained { network, missed, ..trained })
+}
+
+/// For each control point the part of the places at which it has by `logits` most of the weight, and by the network less than half as much.
+fn missed(network: &network::Network, x: &[f64], logits: &[f64], m: usize) -> Result<Vec<f64>, Error> {
+    let learned = network.logits(x, &mut |_| true)?;
+    let count = learned.len() / m;
+    let (mut taught, mut found, mut missed) = (vec![0.0; m], vec![0.0; m], vec![0.0; m]);
+    for (logits, learned) in logits.chunks_exact(m).zip(learned.chunks_exact(m)) {
+        let label = logits.iter().map(|logit| *logit as f32).collect::<Vec<_>>();
+        softmax::weights(&label, 1.0, &mut taught);
+        softmax::weights(learned, 1.0, &mut found);
+        for i in (0..m).filter(|&i| taught[i] > 0.5 && found[i] < 0.5 * taught[i]) {
+            missed[i] += 1.0 / count as f64;
+        }
+    }
+    Ok(missed)
 }
 
 /// Places of a shape, and the logits of the control points `p` (m x dim) there.
@@ -94,6 +116,26 @@ pub fn labels(
     shape: Shape<'_>,
     progress: &mut Progress<'_>,
 ) -> Result<Labels, Error> {
+    let m = p.len() / dim.max(1);
+    let Taught { labels: Labels { mut x, mut logits }, spread } = taught(p, dim, frame, shape, progress)?;
+    x.truncate(dim * spread);
+    logits.truncate(m * spread);
+    Ok(Labels { x, logits })
+}
+
+/// What a network is taught: at the first places, which are spread over the shape, and then at all that follow a control point by the law.
+struct Taught {
+    labels: Labels,
+    spread: usize,
+}
+
+fn taught(
+    p: &[f64],
+    dim: usize,
+    frame: Frame,
+    shape: Shape<'_>,
+    progress: &mut Progress<'_>,
+) -> Result<Taught, Error> {
     if check_points("control points", p, dim)? == 0 {
         return Err(Error::argument("control points", "expected at least one, found none"));
     }
@@ -108,7 +150,9 @@ pub fn labels(
     report(progress, 0.7)?;
     let met = first_met(&links, &near, &p, &along)?;
     report(progress, 0.9)?;
-    let chosen = spread(&links.nodes, progress)?;
+    let mut chosen = spread(&links.nodes, progress)?;
+    let spread = chosen.len();
+    chosen.extend((0..links.nodes.len()).filter(|&node| along.part_of_way(node) < LAW));
 
     let spacing = median(&along.apart);
     let (mut places, mut logits) = (Vec::new(), Vec::new());
@@ -116,15 +160,14 @@ pub fn labels(
         let share = (REACH * spacing / along.far[node].max(LEAST)).min(1.0).powi(4);
         let of_node = &met[node * p.len()..][..p.len()];
         let mut of_node = logits_of(&links.nodes[node], &p, of_node, share);
-        let own =
-            OWN * ((NEAR_END - along.far[node] / along.second[node]) / (NEAR_END - NEAR)).clamp(0.0, 1.0);
+        let own = OWN * ((NEAR_END - along.part_of_way(node)) / (NEAR_END - NEAR)).clamp(0.0, 1.0);
         follow(&mut of_node, along.nearest[node] as usize, own);
         logits.extend(tailed(&of_node));
         let x = &links.nodes[node];
         places.extend((0..dim).map(|k| x[k] * frame.half + frame.centre[k]));
     }
     report(progress, 1.0)?;
-    Ok(Labels { x: places, logits })
+    Ok(Taught { labels: Labels { x: places, logits }, spread })
 }
 
 /// Refuses what is no shape.

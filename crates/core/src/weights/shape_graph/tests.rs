@@ -79,6 +79,46 @@ fn along(shape: &Soup, start: Position, end: Position) -> f64 {
 }
 
 #[test]
+fn the_two_shortest_paths_are_those_that_looking_at_all_finds() {
+    let (x, faces) = boxes(&[[[0.0; 3], [0.2, 0.1, 0.1]], [[0.1, 0.1, 0.0], [0.15, 0.3, 0.1]]]);
+    let p = [[0.0, 0.0, 0.0], [0.2, 0.1, 0.1], [0.12, 0.3, 0.05]];
+    let walked = walked(&(x, faces), &p);
+    let (links, count) = (&walked.links, walked.links.nodes.len());
+    let length = |a: usize, b: usize| squared(&links.nodes[a], &links.nodes[b]).sqrt();
+    let mut next = vec![vec![false; count]; count];
+    links
+        .ends
+        .iter()
+        .for_each(|&[a, b]| (next[a as usize][b as usize], next[b as usize][a as usize]) = (true, true));
+    let two = |a: usize, b: usize| next[a][b] || (0..count).any(|c| next[a][c] && next[c][b]);
+    let mut far = vec![vec![f64::INFINITY; count]; p.len()];
+    attached(&walked.near, &p, 2.0, 512)
+        .iter()
+        .for_each(|&(point, node, away)| far[point as usize][node as usize] = away);
+    for far in &mut far {
+        for _ in 0..count {
+            let before = far.clone();
+            for (a, b) in (0..count * count).map(|at| (at / count, at % count)).filter(|&(a, b)| a != b) {
+                if before[a] + length(a, b) < far[b] && two(a, b) {
+                    far[b] = before[a] + length(a, b);
+                }
+            }
+            if before == *far {
+                break;
+            }
+        }
+    }
+    for node in 0..count {
+        let mut all: Vec<(f64, usize)> =
+            far.iter().enumerate().map(|(point, far)| (far[node], point)).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let along = &walked.along;
+        assert!((along.far[node] - all[0].0).abs() < 1e-9 && (along.second[node] - all[1].0).abs() < 1e-9);
+        assert!(along.nearest[node] as usize == all[0].1 || all[1].0 - all[0].0 < 1e-9);
+    }
+}
+
+#[test]
 fn edges_conduct_as_half_the_cotangents_that_face_them() {
     let square = [[0.0, 0.0, 0.0], [0.028, 0.0, 0.0], [0.028, 0.028, 0.0], [0.0, 0.028, 0.0]];
     let links = links_of(&square, &[[0, 1, 2], [0, 2, 3]]);
@@ -279,6 +319,24 @@ fn what_is_nearer_to_a_control_point_than_half_of_the_way_to_any_other_follows_i
             }
         }
         assert!(seen > 300, "{seen}");
+        let m = p.len();
+        let trained = fit(&p.concat(), 3, Frame::IDENTITY, given, 0, &mut |_| true).unwrap();
+        let learned = trained.network.logits(&walked.links.nodes.concat(), &mut |_| true).unwrap();
+        for (node, logits) in learned.chunks_exact(m).enumerate() {
+            let mut weights = vec![0.0; m];
+            crate::softmax::weights(logits, 1.0, &mut weights);
+            let own = walked.along.nearest[node] as usize;
+            assert!(
+                walked.along.part_of_way(node) >= 0.5 || weights[own] > 0.5,
+                "{node} has {}",
+                weights[own]
+            );
+        }
+        assert!(
+            trained.missed.len() == m && trained.missed.iter().sum::<f64>() < 0.01,
+            "{:?}",
+            trained.missed
+        );
     }
 }
 

@@ -1,5 +1,6 @@
 //! Each product of a linear layer against its formula in double precision, on the instruction set that was detected.
 
+use super::super::adam::{BETA_2, BETA_2_IN_BATCHES};
 use super::*;
 use proptest::prelude::*;
 
@@ -96,10 +97,11 @@ proptest! {
 
     #[test]
     fn an_update_is_adam_on_the_gradient_and_the_product_that_of_the_new_weights(
-        inputs in 1usize..70, outputs in 1usize..300, m in 1usize..14, asleep in 1usize..20,
+        inputs in 1usize..70, outputs in 1usize..300, m in 1usize..14, n in 1usize..14, asleep in 1usize..20, batches: bool,
     ) {
         let (mut linear, mut layer) = linear(inputs, outputs, false);
-        let (x, next) = (numbers(inputs * m, 1.0), numbers(inputs * m, 4.0));
+        let (x, next) = (numbers(inputs * m, 1.0), numbers(inputs * n, 4.0));
+        let kept = if batches { BETA_2_IN_BATCHES } else { BETA_2 };
         let mut error = numbers(outputs * m, 2.0);
         error.chunks_mut(m * asleep).step_by(2).for_each(|rows| rows.fill(0.0));
         let parameter = |layer: &Layer, r: usize, c: usize| if c < inputs { layer.weight[r * inputs + c] } else { layer.bias[r] };
@@ -107,20 +109,20 @@ proptest! {
         let mut expected: Vec<f64> = places.iter().map(|(r, c)| f64::from(parameter(&layer, *r, *c))).collect();
         let (mut first, mut second) = (vec![0.0; expected.len()], vec![0.0; expected.len()]);
         for step in 1..=3 {
-            let z = linear.update_and_forward(&reversed(&error, m), &all(&x, m), &all(&next, m), Rates::new(1e-2, step));
+            let z = linear.update_and_forward(&reversed(&error, m), &all(&x, m), &all(&next, n), Rates::new(1e-2, step, kept));
             for (at, (r, c)) in places.iter().enumerate() {
                 let x = |i: usize| if *c < inputs { f64::from(x[c * m + i]) } else { 1.0 };
                 let g: f64 = (0..m).map(|i| f64::from(error[r * m + i]) * x(i)).sum();
                 first[at] = 0.9 * first[at] + 0.1 * g;
-                second[at] = 0.999 * second[at] + 0.001 * g * g;
-                let (mean, square): (f64, f64) = (first[at] / (1.0 - 0.9f64.powi(step)), second[at] / (1.0 - 0.999f64.powi(step)));
+                second[at] = kept * second[at] + (1.0 - kept) * g * g;
+                let (mean, square): (f64, f64) = (first[at] / (1.0 - 0.9f64.powi(step)), second[at] / (1.0 - kept.powi(step)));
                 expected[at] -= 1e-2 * mean / (square.sqrt() + 1e-8);
             }
             linear.store(&mut layer);
             // A gradient that cancels to nothing makes Adam's quotient arbitrary; the errors here do not reach that far.
             let found: Vec<f32> = places.iter().map(|(r, c)| parameter(&layer, *r, *c)).collect();
             close(&found, &expected, 2e-4);
-            close(&flat(&z, outputs), &from_last(&naive_forward(&layer, &next, m), m), 1e-4);
+            close(&flat(&z, outputs), &from_last(&naive_forward(&layer, &next, n), n), 1e-4);
         }
     }
 }
@@ -135,7 +137,7 @@ fn rows_that_never_had_an_error_do_not_change_by_a_bit() {
     error[14 * 3..22 * 3].fill(0.0);
     let x = all(&numbers(120, 2.0), 3);
     for step in 1..=3 {
-        linear.update_and_forward(&reversed(&error, 3), &x, &x, Rates::new(1e-3, step));
+        linear.update_and_forward(&reversed(&error, 3), &x, &x, Rates::new(1e-3, step, BETA_2));
     }
     linear.store(&mut after);
     for (r, (before, after)) in before.weight.chunks(40).zip(after.weight.chunks(40)).enumerate() {
@@ -150,7 +152,12 @@ fn moments_without_gradients_decay_to_nothing_and_no_further() {
     let (error, none) = (reversed(&numbers(24, 1.0), 3), Activations::zeros(9, 3));
     let x = all(&numbers(60, 2.0), 3);
     for step in 1..=1000 {
-        linear.update_and_forward(if step == 1 { &error } else { &none }, &x, &x, Rates::new(1e-3, step));
+        linear.update_and_forward(
+            if step == 1 { &error } else { &none },
+            &x,
+            &x,
+            Rates::new(1e-3, step, BETA_2),
+        );
     }
     let slow = |value: &f32| *value != 0.0 && value.abs() < f32::MIN_POSITIVE;
     assert!(!linear.state.iter().any(|lanes| lanes.0.iter().any(slow)));
@@ -168,7 +175,7 @@ fn inputs_that_never_fire_are_left_out_and_their_weights_kept() {
     close(&flat(&linear.forward(&input), 20), &naive_forward(&layer, &x, m), 1e-4);
 
     let error = some(&numbers(20 * m, 2.0), m, 0..20);
-    let z = linear.update_and_forward(&error, &input, &input, Rates::new(1e-2, 1));
+    let z = linear.update_and_forward(&error, &input, &input, Rates::new(1e-2, 1, BETA_2));
     let mut after = layer.clone();
     linear.store(&mut after);
     close(&flat(&z, 20), &naive_forward(&after, &x, m), 1e-4);
@@ -186,6 +193,6 @@ fn a_layer_of_which_no_input_fires_has_biases_alone() {
     assert_eq!(flat(&linear.forward(&none), 5), biases);
     let error = all(&numbers(10, 1.0), 2);
     assert!(linear.backward(&error, &none).lanes.iter().all(|lanes| lanes.0 == [0.0; 16]));
-    let z = linear.update_and_forward(&error, &none, &none, Rates::new(1e-2, 1));
+    let z = linear.update_and_forward(&error, &none, &none, Rates::new(1e-2, 1, BETA_2));
     assert!(flat(&z, 5).iter().zip(&biases).all(|(after, before)| (after - before).abs() > 9e-3));
 }

@@ -188,7 +188,7 @@ fn samples_are_given_their_labels_whatever_the_number_of_threads() {
     let p = [-1.0, 1.0, 1.0, 1.0];
     let training = Training { width: 64, schedule: Schedule::Cosine(400), rate: 5e-3, ..Training::default() };
     let teach = || {
-        let samples = Samples { x: &x, labels: &labels, batch: 16 };
+        let samples = Samples { x: &x, labels: &labels, spread: labels.len() / 2, batch: 16 };
         fit(&p, Some(samples), 2, Frame::IDENTITY, &training, &mut |_| true).unwrap()
     };
     let here = teach();
@@ -202,6 +202,28 @@ fn samples_are_given_their_labels_whatever_the_number_of_threads() {
     for threads in [1, 3] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         assert_eq!(pool.install(teach), here, "{threads} threads");
+    }
+}
+
+#[test]
+fn what_is_not_looked_at_in_turn_is_learned_where_the_rest_does_not_say_it() {
+    let x: Vec<f64> = (0..60).flat_map(|i| [f64::from(i) / 30.0 - 1.0, 0.0]).collect();
+    let labels: Vec<f32> =
+        x.chunks(2).flat_map(|x| if x[0] < 0.3 { [0.05, 0.95] } else { [0.95, 0.05] }).collect();
+    let training = Training { width: 64, schedule: Schedule::Cosine(400), rate: 5e-3, ..Training::default() };
+    let teach = |count: usize| {
+        let samples = Samples { x: &x[..2 * count], labels: &labels[..2 * count], spread: 39, batch: 16 };
+        fit(&[-1.0, 1.0, 1.0, 1.0], Some(samples), 2, Frame::IDENTITY, &training, &mut |_| true).unwrap()
+    };
+    let follows = |trained: &Trained| {
+        let logits = trained.network.logits(&x, &mut |_| true).unwrap();
+        logits.chunks(2).skip(42).filter(|row| row[0] > row[1]).count()
+    };
+    assert_eq!((follows(&teach(39)), follows(&teach(60))), (0, 18));
+    #[cfg(feature = "threads")]
+    for threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        assert_eq!(pool.install(|| teach(60)), teach(60), "{threads} threads");
     }
 }
 

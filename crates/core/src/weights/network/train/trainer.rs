@@ -1,7 +1,7 @@
 //! One step of the training after another: losses, errors back through the layers, Adam, and the activations that follow.
 
 use super::super::activations::Activations;
-use super::super::adam::{Rates, DUST};
+use super::super::adam::{Rates, BETA_2, BETA_2_IN_BATCHES, DUST};
 use super::super::first::First;
 use super::super::linear::Linear;
 use super::super::parameters::Parameters;
@@ -27,6 +27,7 @@ pub(super) struct Trainer {
     middle: Linear,
     last: Linear,
     steps: i32,
+    beta_2: f64,
     lessons: Lessons,
     /// Of all points, point by point.
     features: Vec<f32>,
@@ -74,6 +75,7 @@ impl Trainer {
             middle,
             last,
             steps: 0,
+            beta_2: if lessons.in_batches() { BETA_2_IN_BATCHES } else { BETA_2 },
             lessons,
             features,
             batch,
@@ -88,6 +90,9 @@ impl Trainer {
         let (n, m) = (self.batch.len(), self.network.outputs());
         let (logits, labels, batch) = (&self.activations[2], &self.lessons.labels, &self.batch);
         let lanes = m.div_ceil(WIDTH);
+        if self.error.points != n {
+            self.error = Activations::zeros(m, n);
+        }
         // Point by point.
         let (mut errors, mut losses) = (vec![Aligned::ZERO; n * lanes], vec![0.0; n]);
         let points = (EXPONENTIALS / m).max(1);
@@ -122,7 +127,7 @@ impl Trainer {
     /// One step of Adam after [`Trainer::losses`], and the activations of the network that it gives.
     pub(super) fn step(&mut self, rate: f64) {
         self.steps += 1;
-        let rates = Rates::new(rate, self.steps);
+        let rates = Rates::new(rate, self.steps, self.beta_2);
         // Errors go back through the layers as they were; then each is updated.
         let [first, second, _] = &self.activations;
         let second_error = self.last.backward(&self.error, second);
@@ -137,12 +142,22 @@ impl Trainer {
         self.activations = [next_first, next_second, logits];
     }
 
+    /// Has the steps after the next look at what the network has not learned yet.
+    pub(super) fn look_again(&mut self) {
+        self.store();
+        self.lessons.look_again(&self.network);
+    }
+
     pub(super) fn finish(mut self) -> Parameters {
+        self.store();
+        self.network
+    }
+
+    fn store(&mut self) {
         let [a, b, c] = &mut self.network.layers;
         self.first.store(a);
         self.middle.store(b);
         self.last.store(c);
-        self.network
     }
 }
 
