@@ -8,6 +8,7 @@
 //! | `weight0` to `weight2`, `bias0` to `bias2` | f32 (outputs, inputs), (outputs) | networks |
 //! | `frequencies` | f32 (k, d) | networks: of the Fourier features, k = 0 without |
 //! | `losses`, `loss` | f64 (steps), (1) | networks |
+//! | `missed` | f64 (m) | shape-aware, where it was measured at the fit |
 //! | `alpha`, `epsilon` | f64 (1) | inverse distance |
 //! | `elastic_nodes`, `elastic_areas` | f64 (k, d), (k) | maps that were fitted with `relax` |
 //! | `elastic_links`, `elastic_stiffness` | u32 (l, 2), f64 (l) | the same |
@@ -124,6 +125,9 @@ fn write(weights: &Weights, body: Option<&Body>, session: Option<String>) -> Vec
             arrays.push(("frequencies".into(), Array::singles(&[frequencies.len() / dim, dim], frequencies)));
             arrays.push(("losses".into(), Array::doubles(&[trained.losses.len()], &trained.losses)));
             arrays.push(("loss".into(), Array::doubles(&[1], &[trained.loss])));
+            if !trained.missed.is_empty() {
+                arrays.push(("missed".into(), Array::doubles(&[trained.missed.len()], &trained.missed)));
+            }
         }
         Weights::InverseDistance(function) => {
             arrays.push(("alpha".into(), Array::doubles(&[1], &[function.alpha()])));
@@ -190,10 +194,18 @@ fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
                 network: network(&arrays, m, dim, frame)?,
                 losses: arrays.doubles("losses", &arrays.shape("losses", 1)?)?,
                 loss: arrays.number("loss")?,
+                // Of shape-aware weights, since it is measured.
+                missed: match arrays.0.tensor("missed") {
+                    Ok(_) => arrays.doubles("missed", &[m])?,
+                    Err(_) => Vec::new(),
+                },
                 control_points: p,
             };
             if trained.losses.iter().chain([&trained.loss]).any(|loss| !loss.is_finite()) {
                 return Err(broken("losses: expected finite numbers"));
+            }
+            if trained.missed.iter().any(|part| !(0.0..=1.0).contains(part)) {
+                return Err(broken("missed: expected parts from 0 to 1"));
             }
             if kind == "neural" {
                 Weights::Neural(trained)

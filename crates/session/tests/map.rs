@@ -1,5 +1,6 @@
 //! Maps: what a fitted session does, says, and keeps.
 
+use neuralmls_core::{Trained, Weights};
 use neuralmls_session::{
     read, Bounds, ControlPoint, ControlPoints, ErrorKind, HandlesSetting, Held, Map, Orientation, Session,
     Settings, Transform, WeightsSettings,
@@ -199,6 +200,45 @@ fn what_a_file_cannot_hold_is_what_is_reported() {
         report.warnings[0].contains("this PLY file holds coordinates in steps of 0.5 here"),
         "{report:?}"
     );
+}
+
+/// A map whose network did not learn so much of what each control point was to have.
+fn missing(parts: &[f64]) -> Map {
+    let mut session = session(neural());
+    let Weights::Neural(trained) = fitted(&session).weights().clone() else { panic!("a network") };
+    session.settings.weights = WeightsSettings::ShapeAware { seed: 0 };
+    Map::of(session, Weights::ShapeAware(Trained { missed: parts.to_vec(), ..trained })).unwrap()
+}
+
+#[test]
+fn what_a_network_did_not_learn_is_said_where_it_is_more_than_negligible() {
+    let said = |parts: &[f64]| {
+        let map = missing(parts);
+        map.report(&map.aim().unwrap(), None).unwrap().warnings
+    };
+    for little in [&[][..], &[0.0; 5], &[0.003, 0.0, 0.003, 0.003, 0.0]] {
+        assert!(said(little).is_empty());
+    }
+    let warnings = said(&[0.001, 0.02, 0.0, 0.04, 0.0]);
+    assert_eq!(warnings.len(), 1);
+    assert!(warnings[0].starts_with("6.1 % of the shape does not follow"), "{warnings:?}");
+    assert!(warnings[0].contains("above all 'p4' and 'p2':"), "{warnings:?}");
+}
+
+#[test]
+fn what_a_network_did_not_learn_is_kept_and_maps_without_it_are_read() {
+    for parts in [&[0.0, 0.01, 0.0, 0.02, 0.0][..], &[]] {
+        let map = missing(parts);
+        let again = Map::from_bytes(&map.to_bytes()).unwrap();
+        assert_eq!(again.weights(), map.weights());
+        assert_eq!(again.to_bytes(), map.to_bytes());
+    }
+    for (parts, why) in
+        [(&[2.0; 5][..], "missed: expected parts from 0 to 1"), (&[0.1; 4], "missed: expected F64 [5]")]
+    {
+        let error = Map::from_bytes(&missing(parts).to_bytes()).err().unwrap();
+        assert!(error.message.contains(why), "{error}");
+    }
 }
 
 #[test]
