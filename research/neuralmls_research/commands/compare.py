@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 @click.option(
     "--methods",
     metavar="NAME,...",
-    help="neural,neural-exact,shape-aware,shape-aware-exact,classic,rbf,arap,arap-from-fit,biharmonic,"
-    "biharmonic-displacements,keypoint-deformer; all if not given.",
+    help="neural,neural-exact,shape-aware,shape-aware-exact,neural-relax,shape-aware-relax,classic,rbf,arap,"
+    "arap-from-fit,biharmonic,biharmonic-displacements,keypoint-deformer; all if not given.",
 )
 @settings.options(alpha=0.5)
 @click.option("--output", "-o", metavar="FOLDER", type=options.PATH, help="Write each deformed shape into it.")
