@@ -258,10 +258,14 @@ impl Map {
         maps: bool,
         progress: &mut Progress<'_>,
     ) -> Result<Deformed, Error> {
-        let mut y = vec![0.0; bound.points().len()];
-        let mut matrices = maps.then(|| vec![0.0; bound.points().len() * self.session.points.dim()]);
-        self.deform_into(bound, aim, &mut y, matrices.as_deref_mut(), progress)?;
-        Ok(Deformed { positions: y, maps: matrices })
+        let (settings, posed) = (&self.session.settings, self.session.posed());
+        let pose = Pose { q: &aim.targets, ..posed.pose() };
+        let mut deformed = bound.deform(pose, settings.temperature, maps, progress)?;
+        if let Some(relaxed) = self.relaxed(aim)? {
+            let maps = deformed.maps.as_deref_mut();
+            bound.relax(&relaxed, settings.relax, &mut deformed.positions, maps)?;
+        }
+        Ok(deformed)
     }
 
     /// [`Map::deform`] into memory that the caller has: `y` (n x dim), and `maps` (n x dim x dim) where they are wanted.
