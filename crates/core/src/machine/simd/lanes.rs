@@ -52,6 +52,7 @@ pub(crate) trait Lanes: Numbers {
     }
     fn div(self, other: Self) -> Self;
     fn max(self, other: Self) -> Self;
+    fn sqrt(self) -> Self;
     /// `1 / self` to 11 bits or more, in a fraction of the time of a division.
     fn estimated_inverse(self) -> Self;
     /// `1 / sqrt(self)` to 11 bits or more.
@@ -88,15 +89,6 @@ pub(crate) trait Lanes: Numbers {
         let y = self.estimated_inverse_sqrt();
         let rest = Self::splat(1.0).sub(self.mul(y).mul(y));
         y.mul(Self::splat(0.5)).mul_add(rest, y)
-    }
-
-    /// The square root to about 2e-7 of it, for normal numbers above 0.
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        let y = self.estimated_inverse_sqrt();
-        let root = self.mul(y);
-        let rest = root.mul_sub_from(root, self);
-        y.mul(Self::splat(0.5)).mul_add(rest, root)
     }
 
     /// The sum of the lanes, pairwise: the same order on every instruction set.
@@ -139,6 +131,10 @@ impl Lanes for Portable {
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         self.zip(other, |a, b| if a > b { a } else { b })
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Array(self.0.map(f32::sqrt))
     }
     #[inline(always)]
     fn estimated_inverse(self) -> Self {

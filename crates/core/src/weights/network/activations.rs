@@ -21,6 +21,12 @@ impl Activations {
         self.row_mut(index, |value| *value = 1.0);
     }
 
+    /// The values of the first `count` neurons at a point.
+    pub(super) fn of_point(&self, point: usize, count: usize) -> Vec<f32> {
+        let lanes = self.lanes.iter().skip(point).step_by(self.points);
+        lanes.flat_map(|lanes| lanes.0).take(count).collect()
+    }
+
     /// The values of a neuron at all points.
     #[cfg(test)]
     pub(super) fn row(&self, neuron: usize) -> impl Iterator<Item = f32> + '_ {

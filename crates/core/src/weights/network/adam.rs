@@ -51,15 +51,14 @@ impl Rates {
         second: &mut [f32; WIDTH],
         gradients: L,
     ) {
-        let mut m = L::splat(BETA_1 as f32).mul_add(L::load(first), gradients);
+        let mut m = L::splat(BETA_1 as f32).mul(L::load(first)).add(gradients);
         if self.dusting {
             m = L::select(m.abs().less(L::splat(DUST)), L::splat(0.0), m);
         }
-        let v = gradients.mul_add(gradients, L::splat(self.beta_2).mul(L::load(second)));
+        let v = gradients.mul(gradients).add(L::splat(self.beta_2).mul(L::load(second)));
         let v = v.max(L::splat(LEAST_SQUARE));
-        // A quotient by Newton's method from an estimate: an exact one takes longer than all the rest.
-        let divisor = v.sqrt().mul_add(L::splat(self.correction), L::splat(EPSILON));
-        let parameter = L::splat(self.rate).mul(m).mul_sub_from(divisor.inverse(), L::load(parameters));
+        let divisor = v.sqrt().mul(L::splat(self.correction)).add(L::splat(EPSILON));
+        let parameter = L::load(parameters).sub(L::splat(self.rate).mul(m).div(divisor));
         (*first, *second, *parameters) = (m.store(), v.store(), parameter.store());
     }
 }

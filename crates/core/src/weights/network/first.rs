@@ -82,7 +82,7 @@ fn forward_body<L: Lanes>(state: &[[Aligned; 3]], input: &[f32], m: usize, out: 
         for (out, x) in out.iter_mut().zip(input.chunks_exact(inputs)) {
             let mut z = L::load(&bias[0].0);
             for (weight, x) in weights.iter().zip(x) {
-                z = L::load(&weight[0].0).mul_add(L::splat(*x), z);
+                z = L::load(&weight[0].0).mul(L::splat(*x)).add(z);
             }
             *out = Aligned(z.max(L::splat(0.0)).store());
         }
@@ -113,12 +113,39 @@ fn update_body<L: Lanes>(
                 for (k, gradient) in gradient.iter_mut().enumerate() {
                     // The bias is the weight of an input that is always 1.
                     let x = x.get(TILE * tile + k).copied().unwrap_or(1.0);
-                    *gradient = L::splat(x).mul_add(error, *gradient);
+                    *gradient = L::splat(x).mul(error).add(*gradient);
                 }
             }
             for ([weights, first, second], gradient) in state.iter_mut().zip(gradient) {
                 rates.descend(&mut weights.0, &mut first.0, &mut second.0, gradient);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::adam::BETA_2;
+    use super::*;
+
+    #[test]
+    fn every_instruction_set_gives_the_same_bits() {
+        let numbers = |count: usize, seed: f32| -> Vec<f32> {
+            (0..count).map(|i| (i as f32 * 0.7 + seed).sin()).collect()
+        };
+        let (inputs, outputs, m) = (3, 45, 11);
+        let layer = Layer { weight: numbers(inputs * outputs, 0.3), bias: numbers(outputs, 5.0) };
+        let input = numbers(inputs * m, 1.0);
+        let trained = |simd: Simd| {
+            let mut first = First { simd, ..First::new(&layer, (0..outputs).collect()) };
+            let error = first.forward(&input, m);
+            first.update(&error, &input, Rates::new(1e-2, 3, BETA_2));
+            let lanes = |values: &Activations| -> Vec<u32> {
+                values.lanes.iter().flat_map(|lanes| lanes.0.map(f32::to_bits)).collect()
+            };
+            (lanes(&error), lanes(&first.forward(&input, m)))
+        };
+        let all: Vec<_> = Simd::all().map(trained).collect();
+        all.iter().for_each(|of_one| assert_eq!(*of_one, all[0]));
     }
 }

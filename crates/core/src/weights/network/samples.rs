@@ -1,7 +1,6 @@
 //! Points of a shape that a network is taught with besides the control points: how likely each control point is there.
 
-use super::dense;
-use super::parameters::Parameters;
+use super::activations::Activations;
 use crate::check::check_points;
 use crate::error::Error;
 use crate::machine::random::Random;
@@ -81,16 +80,18 @@ impl Lessons {
         self.batches.size > 0
     }
 
-    /// Has the steps that follow look at what `network` has not learned, too, of the places that are not looked at in turn.
-    pub(super) fn look_again(&mut self, network: &Parameters) {
-        let m = network.outputs();
-        let further = &self.points[self.dim * self.spread..];
-        let logits = dense::logits(network, further, &mut |_| true).expect("nobody stops it");
-        let labels = self.labels[m * self.spread..].chunks_exact(m);
-        let unlearned =
-            |(_, (logits, labels)): &(usize, (&[f32], &[f32]))| divergence(logits, labels) > UNLEARNED;
-        let places = (self.spread..).zip(logits.chunks_exact(m).zip(labels)).filter(unlearned);
-        self.batches.again = places.map(|(place, _)| place).collect();
+    /// The numbers of the places that are not looked at in turn.
+    pub(super) fn further(&self) -> Vec<usize> {
+        (self.spread..self.points.len() / self.dim).collect()
+    }
+
+    /// Has the steps that follow look at those [`further`](Lessons::further) places, too, that the network has not learned: `logits` are what it
+    /// says there.
+    pub(super) fn look_again(&mut self, logits: &Activations) {
+        let m = self.labels.len() / (self.points.len() / self.dim);
+        let labels = self.labels[m * self.spread..].chunks_exact(m).enumerate();
+        let unlearned = labels.filter(|(i, labels)| divergence(&logits.of_point(*i, m), labels) > UNLEARNED);
+        self.batches.again = unlearned.map(|(i, _)| self.spread + i).collect();
     }
 
     /// The numbers of the points that the next step looks at.
@@ -159,9 +160,7 @@ pub(super) fn lexicographic_order(p: &[f64], dim: usize) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::parameters::Layer;
     use super::*;
-    use crate::geometry::Frame;
 
     #[test]
     fn every_step_sees_the_control_points_and_every_pass_each_sample_once() {
@@ -190,14 +189,9 @@ mod tests {
         let lessons = Lessons::of_control_points(&[0.0, 1.0], 1).with(samples, 1, &[0, 1], 0);
         let mut lessons = lessons.unwrap();
         assert_eq!((lessons.next(), lessons.next()), (vec![0, 1, 2], vec![0, 1, 2]));
+        assert_eq!(lessons.further(), [3, 4, 5]);
         // A network that says nothing of any place.
-        let layer = |inputs: usize, outputs: usize| Layer {
-            weight: vec![0.0; inputs * outputs],
-            bias: vec![0.0; outputs],
-        };
-        let network =
-            Parameters::new(1, Frame::IDENTITY, Vec::new(), [layer(1, 1), layer(1, 1), layer(1, 2)]).unwrap();
-        lessons.look_again(&network);
+        lessons.look_again(&Activations::zeros(2, 3));
         assert_eq!(lessons.next(), [0, 1, 2, 3, 5]);
     }
 

@@ -4,6 +4,10 @@
 //! Where it differs from the published code: by default it does not stop after a fixed 48 steps but when every control point has most
 //! of the weight at its own place, because handles that do not own their place do not arrive at their targets. Many control points begin
 //! at an output layer in closed form ([`prototypes`]), with random hidden layers, which is mostly enough.
+//!
+//! Training multiplies rounding: what differs by 1e-7 at first is up to 1e-2 of the box after a thousand steps at a large rate. So its kernels do
+//! without fused multiply-adds and estimates, which not every processor has, or has alike: a seed gives the same network, bit for bit, on all of
+//! them, and in the browser.
 
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;

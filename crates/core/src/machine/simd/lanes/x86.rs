@@ -94,6 +94,7 @@ impl Lanes for Avx2 {
     intrinsics! { Avx2:
         div(other) = _mm256_div_ps;
         max(other) = _mm256_max_ps;
+        sqrt() = _mm256_sqrt_ps;
         estimated_inverse() = _mm256_rcp_ps;
         estimated_inverse_sqrt() = _mm256_rsqrt_ps;
     }
@@ -200,6 +201,7 @@ impl Lanes for Avx512 {
     intrinsics! { Avx512:
         div(other) = _mm512_div_ps;
         max(other) = _mm512_max_ps;
+        sqrt() = _mm512_sqrt_ps;
         estimated_inverse() = _mm512_rcp14_ps;
         estimated_inverse_sqrt() = _mm512_rsqrt14_ps;
     }

@@ -58,7 +58,7 @@ fn update_of<L: Lanes, const TILE: usize>(
                     let x = L::load(&x.0);
                     let e: &[f32; TILE] = e.0[row..].first_chunk().expect("part of a lane");
                     for r in 0..TILE {
-                        gradient[r] = L::splat(e[r]).mul_add(x, gradient[r]);
+                        gradient[r] = L::splat(e[r]).mul(x).add(gradient[r]);
                     }
                 }
                 for (r, gradient) in (start..).zip(gradient) {
@@ -114,7 +114,7 @@ fn product_of<L: Lanes, const TILE: usize, const POINTS: usize>(
                 for (k, weights) in weights[r..r + TILE].iter().enumerate() {
                     let w = L::load(&weights.0);
                     for i in 0..POINTS {
-                        sums[k][i] = w.mul_add(x[i], sums[k][i]);
+                        sums[k][i] = w.mul(x[i]).add(sums[k][i]);
                     }
                 }
             }
@@ -170,7 +170,7 @@ fn transposed_product_body<L: Lanes>(
                         let e: &[f32; ROWS] = e.0[half..].first_chunk().expect("half a lane");
                         let mut total = L::load(&sum.0);
                         for r in 0..ROWS {
-                            total = L::splat(e[r]).mul_add(w[r], total);
+                            total = L::splat(e[r]).mul(w[r]).add(total);
                         }
                         *sum = Aligned(total.store());
                     }

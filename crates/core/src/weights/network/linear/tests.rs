@@ -196,3 +196,20 @@ fn a_layer_of_which_no_input_fires_has_biases_alone() {
     let z = linear.update_and_forward(&error, &none, &none, Rates::new(1e-2, 1, BETA_2));
     assert!(flat(&z, 5).iter().zip(&biases).all(|(after, before)| (after - before).abs() > 9e-3));
 }
+
+#[test]
+fn every_instruction_set_gives_the_same_bits() {
+    let (inputs, outputs, m) = (37, 61, 11);
+    let (x, next, error) = (numbers(inputs * m, 1.0), numbers(inputs * m, 4.0), numbers(outputs * m, 2.0));
+    let trained = |simd: Simd| {
+        let mut linear = Linear { simd, ..linear(inputs, outputs, true).0 };
+        let (error, x) = (reversed(&error, m), all(&x, m));
+        let back = linear.backward(&error, &x);
+        let rates = Rates::new(1e-2, 3, BETA_2);
+        let z = linear.update_and_forward(&error, &x, &all(&next, m), rates);
+        let bits = |values: Vec<f32>| values.into_iter().map(f32::to_bits).collect::<Vec<_>>();
+        (bits(flat(&back, inputs)), bits(flat(&z, outputs)))
+    };
+    let all: Vec<_> = Simd::all().map(trained).collect();
+    all.iter().for_each(|of_one| assert_eq!(*of_one, all[0]));
+}

@@ -144,20 +144,21 @@ impl Trainer {
 
     /// Has the steps after the next look at what the network has not learned yet.
     pub(super) fn look_again(&mut self) {
-        self.store();
-        self.lessons.look_again(&self.network);
+        let further = self.lessons.further();
+        if further.is_empty() {
+            return;
+        }
+        let input = of_points(&self.features, self.network.layers[0].inputs(), &further);
+        let second = self.middle.forward(&self.first.forward(&input, further.len()));
+        self.lessons.look_again(&self.last.forward(&second));
     }
 
     pub(super) fn finish(mut self) -> Parameters {
-        self.store();
-        self.network
-    }
-
-    fn store(&mut self) {
         let [a, b, c] = &mut self.network.layers;
         self.first.store(a);
         self.middle.store(b);
         self.last.store(c);
+        self.network
     }
 }
 
