@@ -143,8 +143,7 @@ impl Map {
     fn misses(&self) -> Result<Option<Advice>, Error> {
         let points = &self.session().points;
         let (dim, aim, posed) = (points.dim(), self.aim()?, self.session().posed());
-        let aimed = Pose { q: &aim.targets, ..posed.pose() };
-        let landed = self.handles().land(aimed, self.session().settings.temperature)?;
+        let landed = self.handles().land(posed.aimed(&aim), self.session().settings.temperature)?;
         let each = |a: &[f64], b: &[f64]| -> Vec<f64> {
             a.chunks_exact(dim).zip(b.chunks_exact(dim)).map(|(a, b)| distance(a, b)).collect()
         };

@@ -203,8 +203,7 @@ impl Map {
         let settings = &self.session.settings;
         let Some(elastic) = self.elastic.as_ref().filter(|_| settings.relax > 0.0) else { return Ok(None) };
         let posed = self.session.posed();
-        let pose = Pose { q: &aim.targets, ..posed.pose() };
-        Ok(elastic.relax(pose, settings.temperature, settings.transform)?)
+        Ok(elastic.relax(posed.aimed(aim), settings.temperature, settings.transform)?)
     }
 
     /// The control points as points that are moved themselves.
@@ -259,8 +258,7 @@ impl Map {
         progress: &mut Progress<'_>,
     ) -> Result<Deformed, Error> {
         let (settings, posed) = (&self.session.settings, self.session.posed());
-        let pose = Pose { q: &aim.targets, ..posed.pose() };
-        let mut deformed = bound.deform(pose, settings.temperature, maps, progress)?;
+        let mut deformed = bound.deform(posed.aimed(aim), settings.temperature, maps, progress)?;
         if let Some(relaxed) = self.relaxed(aim)? {
             let maps = deformed.maps.as_deref_mut();
             bound.relax(&relaxed, settings.relax, &mut deformed.positions, maps)?;
@@ -281,8 +279,7 @@ impl Map {
         progress: &mut Progress<'_>,
     ) -> Result<(), Error> {
         let (settings, posed) = (&self.session.settings, self.session.posed());
-        let pose = Pose { q: &aim.targets, ..posed.pose() };
-        bound.deform_into(pose, settings.temperature, y, maps.as_deref_mut(), progress)?;
+        bound.deform_into(posed.aimed(aim), settings.temperature, y, maps.as_deref_mut(), progress)?;
         if let Some(relaxed) = self.relaxed(aim)? {
             bound.relax(&relaxed, settings.relax, y, maps)?;
         }

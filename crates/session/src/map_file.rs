@@ -195,10 +195,7 @@ fn parse(bytes: &[u8]) -> Result<Parsed, Error> {
                 losses: arrays.doubles("losses", &arrays.shape("losses", 1)?)?,
                 loss: arrays.number("loss")?,
                 // Of shape-aware weights, since it is measured.
-                missed: match arrays.0.tensor("missed") {
-                    Ok(_) => arrays.doubles("missed", &[m])?,
-                    Err(_) => Vec::new(),
-                },
+                missed: if arrays.has("missed") { arrays.doubles("missed", &[m])? } else { Vec::new() },
                 control_points: p,
             };
             if trained.losses.iter().chain([&trained.loss]).any(|loss| !loss.is_finite()) {

@@ -1,6 +1,6 @@
 //! What happened to the control points, and what a person should know of it, in words.
 
-use neuralmls_core::{softmax, Aim, Pose, Soft, Weights};
+use neuralmls_core::{softmax, Aim, Soft, Weights};
 
 use serde_json::json;
 
@@ -93,8 +93,7 @@ impl Map {
         let points = &self.session().points;
         let (dim, posed, stay) = (points.dim(), self.session().posed(), points.stay());
         let temperature = self.session().settings.temperature;
-        let aimed = Pose { q: &aim.targets, ..posed.pose() };
-        let landed = self.handles().land_with_maps(aimed, temperature)?;
+        let landed = self.handles().land_with_maps(posed.aimed(aim), temperature)?;
         let arrived = held.map_or_else(|| landed.positions.clone(), |held| (held.round)(&landed.positions));
         let maps = landed.maps.unwrap_or_default();
         let control_points: Vec<Arrival> = points

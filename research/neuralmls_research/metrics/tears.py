@@ -12,7 +12,7 @@ from neuralmls_research.baselines.checks import library
 from neuralmls_research.metrics.strains import singular_values
 from neuralmls_research.metrics.triangles import Array, Indices, as_surface, normals, places
 
-# Lengths in longest sides of the box. Parts touch within what crates/core/src/weights/shape_graph links.
+# Lengths in longest sides of the box. Parts touch within this: the measure's own word, whatever a method links.
 TOUCH = 0.015
 # An opening that is no wider is not counted: about the distance of the samples from each other, and hardly seen.
 UNSEEN = 0.01

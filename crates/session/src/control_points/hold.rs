@@ -5,7 +5,7 @@
 //! the group, so that what is around them turns with it. A locked control point has itself at rest for its target, and for its
 //! orientation none: it holds what is around it, and if it is in a group, all of the group.
 
-use neuralmls_core::{piece, Pose, Transform};
+use neuralmls_core::{piece, Aim, Pose, Transform};
 
 use super::{ControlPoint, ControlPoints};
 use crate::error::Error;
@@ -26,6 +26,11 @@ impl Posed {
     /// The same, as the core takes it.
     pub fn pose(&self) -> Pose<'_> {
         Pose { q: &self.targets, orientations: self.orientations.as_deref() }
+    }
+
+    /// The same with the targets that were found to aim at.
+    pub fn aimed<'a>(&'a self, aim: &'a Aim) -> Pose<'a> {
+        Pose { q: &aim.targets, ..self.pose() }
     }
 }
 
