@@ -87,8 +87,9 @@ python-lint: .venv/test.stamp
 python-types: .venv/test.stamp
 	$(BIN)/mypy
 
+# In two processes; tests of a file share what they set up.
 python-test: .venv/test.stamp
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 # Runs the sources in docs/notebooks, and writes what comes of them beside them.
 notebooks: .venv/test.stamp
