@@ -22,16 +22,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from neuralmls import (
-    ControlPoints,
-    Deformer,
-    InverseDistanceWeights,
-    Map,
-    NeuralWeights,
-    Session,
-    ShapeAwareWeights,
-    Weights,
-)
+from neuralmls import ControlPoints, Map, Session
 from neuralmls.errors import ArgumentError
 from neuralmls.plugin import Transform
 from neuralmls_research import baselines
@@ -136,15 +127,8 @@ def neural(
     ArgumentError
         A setting is out of its range.
     """
-
-    def fitted(shape: Geometry, p: ArrayLike) -> Weights:
-        return NeuralWeights.fit(p, bounds=_box(shape), **training)
-
     said = {"transform": transform, "temperature": temperature, "relax": relax, **training}
-    settings = settings_of("neural", adherence, **said)
-    if relax:
-        return _of_session(title, settings)
-    return _of_weights(title, fitted, settings, adherence)
+    return _of_session(title, settings_of("neural", adherence, **said))
 
 
 def shape_aware(
@@ -163,15 +147,8 @@ def shape_aware(
     ArgumentError
         A setting is out of its range.
     """
-
-    def fitted(shape: Geometry, p: ArrayLike) -> Weights:
-        return ShapeAwareWeights.fit(p, shape.positions, shape.faces, seed=seed)
-
     said = {"transform": transform, "temperature": temperature, "relax": relax, "seed": seed}
-    settings = settings_of("shape-aware", adherence, **said)
-    if relax:
-        return _of_session(title, settings)
-    return _of_weights(title, fitted, settings, adherence)
+    return _of_session(title, settings_of("shape-aware", adherence, **said))
 
 
 def classic(
@@ -189,14 +166,10 @@ def classic(
     ArgumentError
         A setting is out of its range.
     """
-
-    def fitted(shape: Geometry, p: ArrayLike) -> Weights:
-        return InverseDistanceWeights(p, alpha=alpha, epsilon=epsilon, bounds=_box(shape) if epsilon else None)
-
     settings = settings_of(
         "inverse-distance", transform=transform, temperature=temperature, alpha=alpha, epsilon=epsilon
     )
-    return _of_weights(title, fitted, settings, adherence=0.0)
+    return _of_session(title, settings)
 
 
 def kpd(network: KeypointDeformer | str | os.PathLike[str], title: str = baselines.TITLES["kpd"]) -> Method:
@@ -218,34 +191,6 @@ def kpd(network: KeypointDeformer | str | os.PathLike[str], title: str = baselin
         return Bound(lambda q: baselines.get("kpd")(shape, p, q, network=bound))
 
     return Method(title, bind)
-
-
-def _box(shape: Geometry) -> Array:
-    return np.stack([shape.positions.min(axis=0), shape.positions.max(axis=0)])
-
-
-def _of_weights(
-    title: str | None,
-    fitted: Callable[[Geometry, ArrayLike], Weights],
-    settings: Mapping[str, Any],
-    adherence: float,
-) -> Method:
-    """Moving least squares with weights that are fitted to the shape and its control points."""
-    transform, temperature = settings["transform"], settings["temperature"]
-
-    def bind(shape: Geometry, p: ArrayLike) -> Bound:
-        weights = fitted(shape, p)
-
-        def deformed(deformer: Deformer, q: ArrayLike) -> Array:
-            return np.asarray(deformer.deform(q, temperature, adherence=adherence), dtype=np.float64)
-
-        of_vertices = Deformer(shape.positions, weights, transform=transform)
-        return Bound(
-            lambda q: deformed(of_vertices, q),
-            lambda q: lambda x: deformed(Deformer(x, weights, transform=transform), q),
-        )
-
-    return Method(title or title_of(settings), bind, settings)
 
 
 def _of_session(title: str | None, settings: Mapping[str, Any]) -> Method:
