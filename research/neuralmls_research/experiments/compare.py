@@ -9,7 +9,7 @@ from time import perf_counter
 
 from numpy.typing import ArrayLike
 
-from neuralmls.errors import ArgumentError, FileError, NeuralMLSError
+from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
 from neuralmls_research.experiments.methods import Array, Geometry, Method
 from neuralmls_research.metrics import Measures, measure
 
@@ -76,7 +76,7 @@ def attempt(method: Method, shape: Geometry, p: ArrayLike, q: ArrayLike) -> Resu
         y = bound.positions(q)
         seconds = perf_counter() - start
         f = None if bound.space is None else bound.space(q)
-    except (ArgumentError, FileError):
+    except (ArgumentError, ControlPointError, FileError):
         raise
     except NeuralMLSError as error:
         return Result(method.title, reason=str(error))
