@@ -12,7 +12,7 @@ import { emptySession } from "./model/session.ts";
 import { listenToKeys } from "./panels/actions.ts";
 import { listenToDrops } from "./panels/drops.ts";
 import { Root } from "./panels/Root.tsx";
-import { Autosave } from "./storage/autosave.ts";
+import { Works } from "./storage/works.ts";
 import "./styles.css";
 import { draw } from "./viewport/drawn.ts";
 import { Viewport } from "./viewport/viewport.ts";
@@ -52,6 +52,7 @@ const display: Display = {
   setView: (view) => viewport.setView(view),
   focus: (what) => viewport.focus(what),
   cancel: () => viewport.cancel(),
+  thumbnail: () => viewport.thumbnail(),
   picture: () => viewport.picture(),
   async morphTarget({ positions }) {
     if (!viewport.drawn) throw new Error("There is no shape yet.");
@@ -64,7 +65,7 @@ const display: Display = {
   },
 };
 
-const app = new App(core, defaults, new Autosave(), history, store, display);
+const app = new App(core, defaults, new Works(), history, store, display);
 store.subscribe(({ theme }, before) => {
   if (theme !== before.theme) localStorage.setItem(THEME_KEY, theme);
 });

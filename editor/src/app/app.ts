@@ -2,15 +2,16 @@
 
 import { addPoints, type Command, type History, load, placeAnew } from "../commands/index.ts";
 import { fromDocument, toDocument } from "../model/document.ts";
-import { emptySession, isMoved } from "../model/session.ts";
+import { emptySession, isMoved, type Session } from "../model/session.ts";
 import { pointAt } from "../model/vec3.ts";
 import { DEFAULT_VIEW, type View } from "../model/view.ts";
-import type { Autosave } from "../storage/autosave.ts";
+import type { Work, Works } from "../storage/works.ts";
 import type { Core, Files, OnProgress, Opened, Settings } from "../worker/protocol.ts";
 import { servedSession } from "../worker/served.ts";
 import { Advice } from "./advice.ts";
 import type { Display } from "./display.ts";
 import { download, extensionOf, readAll, sort, stemOf } from "./files.ts";
+import { Keeping, sameFiles } from "./keeping.ts";
 import { asSentence } from "./sentence.ts";
 import type { Sample, State, Toast } from "./state.ts";
 import type { Store } from "./store.ts";
@@ -26,7 +27,6 @@ const STAGES = {
 
 /** The panels follow a drag at this distance: more often would cost more than it tells. */
 const PANEL_MILLISECONDS = 100;
-const AUTOSAVE_MILLISECONDS = 400;
 const TOAST_MILLISECONDS = 7000;
 
 export class App {
@@ -36,15 +36,16 @@ export class App {
   readonly #core: Core;
   /** The settings that hold where nothing is said. */
   readonly #defaults: Settings;
-  readonly #autosave: Autosave;
+  readonly #keeping: Keeping;
   readonly #weights: Weights;
   #toasts = 0;
   #telling: ReturnType<typeof setTimeout> | undefined;
-  #autosaving: ReturnType<typeof setTimeout> | undefined;
   #opening: AbortController | undefined;
 
-  constructor(core: Core, defaults: Settings, autosave: Autosave, history: History, store: Store<State>, display: Display) {
-    [this.#core, this.#defaults, this.#autosave, this.history, this.store, this.display] = [core, defaults, autosave, history, store, display];
+  constructor(core: Core, defaults: Settings, works: Works, history: History, store: Store<State>, display: Display) {
+    [this.#core, this.#defaults, this.history, this.store, this.display] = [core, defaults, history, store, display];
+    this.#keeping = new Keeping(works, history, store, () => display.thumbnail());
+    this.#keeping.onRefused = () => this.toast("error", "The browser does not keep this work: save it before you close the tab.");
     this.#weights = new Weights(core, history, store, (slot, weights) => display.setWeights(slot, weights));
     this.#weights.showFrame = (slot, positions, maps) => display.showFrame(slot, positions, maps);
     new Advice(core, history, store, this.#weights);
@@ -71,11 +72,14 @@ export class App {
       // A copy of the editor without samples works as well.
     }
     await this.#guarded(async () => {
-      const served = await servedSession();
-      if (!served) return this.offerRecovery();
+      await this.#keeping.refresh();
+      const [served, earlier] = [await servedSession(), await this.#keeping.ofThisTab()];
+      if (earlier && earlier.work.points > 0 && (!served || sameFiles(served.files, earlier.files))) return this.#resume(earlier);
+      if (!served) return;
       await this.#openShape(served.files, served.name);
       if (served.points) await this.#openPoints(new Map([served.points]), [served.points[0]]);
       this.display.focus("all");
+      this.store.set({ offer: (await this.#keeping.ofFiles(served.name, served.files)) ?? null });
     });
   }
 
@@ -104,16 +108,22 @@ export class App {
     });
   }
 
-  async #openShape(files: Files, name: string): Promise<void> {
+  /** Opens a shape; the work on another one is kept, and can be gone back to. `work` is what is gone on with, if it is one that was kept. */
+  async #openShape(files: Files, name: string, work?: Work): Promise<void> {
     await this.#busy(`Reading ${name}`, async (progress, signal) => {
+      const before = this.store.value.shape?.opened.name;
+      if (!(await this.#keeping.flush()) && !confirm(`The browser did not keep the work on ${before}. Open ${name}, and lose it?`)) return;
       const opened = await this.#core.open(files, name, { progress, signal });
+      const session = work?.session ? await this.#sessionOf(work) : emptySession(this.#defaults);
       this.#weights.forget();
       const { hasAppearance } = await this.display.showShape(opened, files);
-      this.store.set({ shape: { opened, files, hasAppearance }, recovery: null, toasts: [] });
+      const left = this.#keeping.leave();
+      this.store.set({ shape: { opened, files, hasAppearance }, offer: null, toasts: [], autosaved: null });
       this.setView({ ...DEFAULT_VIEW, adding: this.store.value.view.adding });
-      this.history.reset(emptySession(this.#defaults));
+      this.history.reset(session);
       for (const warning of opened.warnings) this.toast("warning", warning);
-      await this.#keep(() => this.#autosave.saveShape(name, files));
+      await this.#keeping.begin(work);
+      if (left !== null) this.toast("done", `Your work on ${before} is kept`, { label: "Go back to it", run: () => void this.takeUp(left) });
     });
   }
 
@@ -208,39 +218,37 @@ export class App {
 
   // Earlier work
 
-  /** Offers the work of an earlier visit, if there is any. */
-  async offerRecovery(): Promise<void> {
-    await this.#keep(async () => {
-      const work = await this.#autosave.load();
-      if (!work || this.store.value.shape) return;
-      this.store.set({ recovery: { name: work.name, when: work.when, points: work.points } });
-    });
-  }
-
-  async recover(): Promise<void> {
+  /** Goes on with a work that was kept. */
+  async takeUp(id: string): Promise<void> {
     await this.#guarded(async () => {
-      const work = await this.#autosave.load();
-      if (!work) return;
-      await this.#openShape(work.files, work.name);
-      const files = new Map([[work.name, new TextEncoder().encode(work.session)]]);
-      if (work.session !== "") {
-        const { document } = await this.#core.readSession(files, [work.name]);
-        this.history.reset(fromDocument(document, this.#defaults));
-      }
-      this.setView({ ...work.view, before: false });
+      const kept = await this.#keeping.load(id);
+      if (!kept) throw new Error("This work is no longer here: it was forgotten in another tab.");
+      await this.#resume(kept);
     });
   }
 
-  async forgetRecovery(): Promise<void> {
-    this.store.set({ recovery: null });
-    await this.#keep(() => this.#autosave.clear());
+  async #resume({ work, files }: { work: Work; files: Files }): Promise<void> {
+    await this.#openShape(files, work.name, work);
+    if (this.store.value.shape?.files !== files) return; // one would rather keep what is open
+    this.display.focus("all");
+    this.setView({ ...work.view, before: false });
+  }
+
+  async #sessionOf({ name, session }: Work): Promise<Session> {
+    const { document } = await this.#core.readSession(new Map([[name, new TextEncoder().encode(session)]]), [name]);
+    return fromDocument(document, this.#defaults);
+  }
+
+  async forget(id: string): Promise<void> {
+    this.store.set({ offer: null });
+    await this.#keeping.forget(id);
   }
 
   // Telling
 
-  toast(kind: Toast["kind"], text: string): void {
+  toast(kind: Toast["kind"], text: string, action?: NonNullable<Toast["action"]>): void {
     const id = ++this.#toasts;
-    const toast = { id, kind, text: asSentence(text) };
+    const toast: Toast = { id, kind, text: asSentence(text), ...(action && { action }) };
     const others = this.store.value.toasts.filter((other) => other.text !== toast.text);
     this.store.set({ toasts: [...others, toast].slice(-4) });
     if (kind !== "error") setTimeout(() => this.dismiss(id), TOAST_MILLISECONDS);
@@ -261,33 +269,8 @@ export class App {
     this.#telling = undefined;
     const { session, undoLabel, redoLabel } = this.history;
     this.store.set({ session, undoLabel, redoLabel });
-    if (this.history.inGesture || !this.store.value.shape) return;
-    clearTimeout(this.#autosaving);
-    this.#autosaving = setTimeout(() => void this.#saveSession(), AUTOSAVE_MILLISECONDS);
+    if (!this.history.inGesture && this.store.value.shape) this.#keeping.changed();
   }
-
-  async #saveSession(): Promise<void> {
-    await this.#keep(async () => {
-      const { shape, view } = this.store.value;
-      const { session } = this.history;
-      if (!shape) return;
-      const text = session.points.length > 0 ? JSON.stringify(toDocument(session, shape.opened.dim)) : "";
-      await this.#autosave.saveSession(text, session.points.length, view);
-      this.store.set({ autosaved: new Date() });
-    });
-  }
-
-  /** What the browser does not let us keep (private windows, a full disk) is told once, and hinders nothing. */
-  async #keep(what: () => Promise<void>): Promise<void> {
-    try {
-      await what();
-    } catch {
-      if (!this.#told) this.toast("warning", "The browser does not keep this work: save it before you close the tab.");
-      this.#told = true;
-    }
-  }
-
-  #told = false;
 
   #failIfUnfitted(): void {
     const { fit } = this.store.value;

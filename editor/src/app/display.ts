@@ -15,6 +15,8 @@ export interface Display {
   focus(what: "all" | "selection"): void;
   /** Ends a drag as if it had not been; false where there was none. */
   cancel(): boolean;
+  /** A small picture of the view, as the address of an image; "" where there is none. */
+  thumbnail(): string;
   /** A picture of the view (PNG). */
   picture(): Promise<Blob>;
   /** The shape at rest with the deformed one as a morph target (GLB). */

@@ -3,6 +3,7 @@
 import { emptySession, type PointId, type Session } from "../model/session.ts";
 import type { Settings } from "../model/settings.ts";
 import { DEFAULT_VIEW, type View } from "../model/view.ts";
+import type { Work } from "../storage/works.ts";
 import type { Advice, Files, Opened, Report } from "../worker/protocol.ts";
 
 export interface OpenShape {
@@ -23,6 +24,8 @@ export interface Toast {
   id: number;
   kind: "error" | "warning" | "done";
   text: string;
+  /** What can be done about it. */
+  action?: { label: string; run: () => void };
 }
 
 /** Work that one waits for. */
@@ -40,13 +43,6 @@ export interface Sample {
   file: string;
   points: string | null;
   materials: string[];
-}
-
-/** Work of an earlier visit that can be taken up again. */
-export interface Recovery {
-  name: string;
-  when: Date;
-  points: number;
 }
 
 export interface State {
@@ -70,9 +66,14 @@ export interface State {
   help: boolean;
   theme: Theme;
   samples: readonly Sample[];
-  recovery: Recovery | null;
-  /** Whether the browser keeps the work. */
+  /** What can be taken up again, the newest first. */
+  recent: readonly Work[];
+  /** Of these, one of the shape that `neuralmls edit` opened. */
+  offer: Work | null;
+  /** When the browser last kept the work. */
   autosaved: Date | null;
+  /** Whether it last refused to. */
+  refused: boolean;
 }
 
 /** Before anything is opened. */
@@ -93,6 +94,8 @@ export const initialState = (settings: Settings, theme: Theme): State => ({
   help: false,
   theme,
   samples: [],
-  recovery: null,
+  recent: [],
+  offer: null,
   autosaved: null,
+  refused: false,
 });

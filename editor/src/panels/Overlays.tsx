@@ -3,12 +3,13 @@ import { otherKind, type WeightsKind } from "../model/settings.ts";
 import { GESTURES, SHORTCUTS } from "./actions.ts";
 import { Button } from "./controls.tsx";
 import { Icon } from "./icons.tsx";
+import { toldOf } from "./told.ts";
 import { useApp, useAppState } from "./useStore.ts";
 
 /** What is seen before there is a shape. */
 export function Empty() {
   const app = useApp();
-  const { shape, samples, recovery, busy } = useAppState();
+  const { shape, samples, recent, busy } = useAppState();
   if (shape || busy) return null;
   return (
     <div class="empty">
@@ -36,19 +37,40 @@ export function Empty() {
             ))}
           </div>
         )}
-        {recovery && (
-          <div class="recovery" role="alert">
-            <span>
-              Work from {recovery.when.toLocaleString([], { dateStyle: "medium", timeStyle: "short" })} is still here:{" "}
-              <strong>{recovery.name}</strong>, {recovery.points} control points.
-            </span>
-            <span class="row">
-              <Button primary label="Take it up again" onClick={() => void app.recover()} />
-              <Button label="Forget it" onClick={() => void app.forgetRecovery()} />
-            </span>
-          </div>
+        {recent.length > 0 && (
+          <section class="recent" aria-labelledby="recent-title">
+            <h3 id="recent-title">Your work</h3>
+            <ul>
+              {recent.map((work) => (
+                <li key={work.id}>
+                  <button type="button" class="work-card" onClick={() => void app.takeUp(work.id)}>
+                    {work.picture ? <img src={work.picture} alt="" /> : <Icon name="target" />}
+                    <strong>{work.name}</strong>
+                    <small>{toldOf(work)}</small>
+                  </button>
+                  <Button quiet icon="close" label={`Forget ${work.name}`} onClick={() => void app.forget(work.id)} />
+                </li>
+              ))}
+            </ul>
+          </section>
         )}
       </div>
+    </div>
+  );
+}
+
+/** Work on the shape that was opened by `neuralmls edit`. */
+export function Offer() {
+  const app = useApp();
+  const { offer } = useAppState();
+  if (!offer) return null;
+  return (
+    <div class="offer" role="status">
+      <span>
+        You have worked on <strong>{offer.name}</strong> before: {toldOf(offer)}.
+      </span>
+      <Button primary label="Take it up again" onClick={() => void app.takeUp(offer.id)} />
+      <Button label="Begin anew" onClick={() => app.store.set({ offer: null })} />
     </div>
   );
 }
@@ -74,6 +96,7 @@ export function Toasts() {
       {toasts.map((toast) => (
         <div key={toast.id} class={`toast ${toast.kind}`} role={toast.kind === "error" ? "alert" : "status"}>
           <span>{toast.text}</span>
+          {toast.action && <Button label={toast.action.label} onClick={toast.action.run} />}
           <Button quiet icon="close" label="Dismiss" onClick={() => app.dismiss(toast.id)} />
         </div>
       ))}

@@ -3,7 +3,7 @@ import type { App } from "../app/app.ts";
 import { ACCEPTED } from "../app/files.ts";
 import { AdvicePanel } from "./AdvicePanel.tsx";
 import { LookBar } from "./LookBar.tsx";
-import { BusyNote, Empty, Help, SideLabels, Toasts } from "./Overlays.tsx";
+import { BusyNote, Empty, Help, Offer, SideLabels, Toasts } from "./Overlays.tsx";
 import { PointsPanel } from "./PointsPanel.tsx";
 import { StatusBar } from "./StatusBar.tsx";
 import { ToolBar } from "./ToolBar.tsx";
@@ -50,6 +50,7 @@ function Page({ host }: { host: HTMLElement }) {
           <ToolBar />
           <LookBar />
           <Empty />
+          <Offer />
           <BusyNote />
           <StatusBar />
         </div>

@@ -8,7 +8,7 @@ const CLOCK = new Intl.DateTimeFormat([], { hour: "2-digit", minute: "2-digit" }
 
 /** How things stand, quietly. */
 export function StatusBar() {
-  const { fit, comparisonFit, session, shape, distances, report, advice, view, autosaved, slowFrames } = useAppState();
+  const { fit, comparisonFit, session, shape, distances, report, advice, view, autosaved, refused, slowFrames } = useAppState();
   if (!shape) return null;
   const moved = session.points.filter(isMoved);
   const away = moved.map((point) => distances.get(point.id)).filter((d) => d !== undefined);
@@ -31,7 +31,8 @@ export function StatusBar() {
       <span class="spacer" />
       {view.moves === "position" && <span class="mode">moving places at rest</span>}
       {view.before && <span class="mode">before</span>}
-      {autosaved && <span title="In this browser; nothing is uploaded">kept {CLOCK.format(autosaved)}</span>}
+      {refused && <span class="refused">not kept: save it</span>}
+      {autosaved && !refused && <span title="In this browser; nothing is uploaded">kept {CLOCK.format(autosaved)}</span>}
     </footer>
   );
 }

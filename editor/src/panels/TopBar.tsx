@@ -1,6 +1,7 @@
 import type { Theme } from "../app/state.ts";
 import { Button, Menu, MenuItem } from "./controls.tsx";
 import { Icon } from "./icons.tsx";
+import { toldOf } from "./told.ts";
 import { useApp, useAppState } from "./useStore.ts";
 
 const NEXT_THEME: Record<Theme, Theme> = { system: "dark", dark: "light", light: "system" };
@@ -9,7 +10,7 @@ const WHOLE = new Intl.NumberFormat("en");
 
 export function TopBar() {
   const app = useApp();
-  const { shape, samples, undoLabel, redoLabel, theme, view, busy } = useAppState();
+  const { shape, samples, recent, undoLabel, redoLabel, theme, view, busy } = useAppState();
   const nothing = !shape || busy !== null;
   const choose = (close: () => void, what: () => Promise<void>) => () => {
     close();
@@ -33,6 +34,15 @@ export function TopBar() {
             {(close) =>
               samples.map((sample) => (
                 <MenuItem key={sample.name} label={sample.title} onClick={choose(close, () => app.openSample(sample))} />
+              ))
+            }
+          </Menu>
+        )}
+        {recent.length > 0 && (
+          <Menu label="Recent">
+            {(close) =>
+              recent.map((work) => (
+                <MenuItem key={work.id} label={work.name} detail={toldOf(work)} onClick={choose(close, () => app.takeUp(work.id))} />
               ))
             }
           </Menu>

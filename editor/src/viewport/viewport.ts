@@ -23,6 +23,7 @@ import { Stage } from "./stage.ts";
 
 /** Pixels of a control point's disc. */
 const MARKER_PIXELS = 17;
+const THUMBNAIL = [208, 130] as const;
 
 export class Viewport {
   readonly stage: Stage;
@@ -160,6 +161,19 @@ export class Viewport {
     const { left, top, width, height } = this.stage.pane.getBoundingClientRect();
     const { x, y } = this.#space.toView(place).project(this.stage.camera);
     return { x: left + ((x + 1) / 2) * width, y: top + ((1 - y) / 2) * height };
+  }
+
+  /** A small picture of the view, as the address of an image; "" before there is a shape. */
+  thumbnail(): string {
+    const { domElement } = this.stage.renderer;
+    if (!this.drawn || domElement.width === 0) return "";
+    const small = document.createElement("canvas");
+    [small.width, small.height] = THUMBNAIL;
+    const scale = Math.max(small.width / domElement.width, small.height / domElement.height);
+    const [width, height] = [scale * domElement.width, scale * domElement.height];
+    this.stage.draw(); // what is drawn can be read until the browser shows it
+    small.getContext("2d")?.drawImage(domElement, (small.width - width) / 2, (small.height - height) / 2, width, height);
+    return small.toDataURL("image/webp", 0.8);
   }
 
   /** A picture of the view, without its markers. */

@@ -194,55 +194,6 @@ test("heat map, comparison and dark are shown", async ({ editor }) => {
   await editor.screenshot({ path: picture("dark.png") });
 });
 
-test("after a crash the work is offered again", async ({ editor, context, server }) => {
-  await openSample(editor, "Table");
-  await fitted(editor);
-  const { points } = await session(editor);
-  await choose(editor, points[0].name);
-  const field = editor.getByRole("textbox", { name: "Target y" });
-  await field.fill(String(points[0].target[1] + 0.2));
-  await field.press("Enter");
-  const before = await session(editor);
-  await expect(editor.getByText(/^kept /)).toBeVisible();
-  await expect.poll(() => kept(editor, points[0].name, before.points[0].target[1])).toBe(true);
-  const crashed = editor.waitForEvent("crash");
-  editor.goto("chrome://crash").catch(() => undefined);
-  await crashed;
-
-  const again = await context.newPage();
-  await again.goto(server.url);
-  await again.getByRole("button", { name: "Take it up again" }).click();
-  await opened(again, "table.obj");
-  await fitted(again);
-  const after = await session(again);
-  expect(after.points.map(({ name, position, target }) => ({ name, position, target }))).toEqual(
-    before.points.map(({ name, position, target }) => ({ name, position, target })),
-  );
-  const shown = await again.evaluate(() => [...neuralmls.readback()!]);
-  expect(difference(vertices(readFileSync(join(samples, "table.obj"), "utf8")), shown)).toBeGreaterThan(0.01);
-});
-
-/** Whether the browser's storage holds a control point with this height. */
-function kept(page: import("@playwright/test").Page, name: string, height: number): Promise<boolean> {
-  return page.evaluate(
-    ([name, height]) =>
-      new Promise<boolean>((resolve, reject) => {
-        const request = indexedDB.open("neuralmls-editor");
-        request.onerror = () => reject(request.error);
-        request.onsuccess = () => {
-          const all = request.result.transaction("work").objectStore("work").get("head");
-          all.onsuccess = () => {
-            const { session } = (all.result as { session: string } | undefined) ?? { session: "" };
-            const points: { name: string; target: number[] }[] = session === "" ? [] : JSON.parse(session).control_points;
-            resolve(points.some((point) => point.name === name && point.target[1] === height));
-            request.result.close();
-          };
-        };
-      }),
-    [name, height] as const,
-  );
-}
-
 test("hostile files are one sentence each, and leave the open shape", async ({ editor }) => {
   await openSample(editor, "Chair");
   await fitted(editor);

@@ -10,7 +10,7 @@ const LAYERS: Record<string, { folders: string[]; packages: string[] }> = {
   model: { folders: [], packages: [] },
   commands: { folders: ["model"], packages: [] },
   worker: { folders: ["model", "wasm"], packages: [] },
-  storage: { folders: ["model"], packages: [] },
+  storage: { folders: ["model"], packages: ["idb"] },
   shader: { folders: ["model"], packages: [] },
   viewport: { folders: ["model", "commands", "shader"], packages: ["three", "three-mesh-bvh"] },
   exports: { folders: ["model", "commands", "viewport"], packages: ["three"] },
