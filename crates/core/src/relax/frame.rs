@@ -1,17 +1,17 @@
 //! A frame: where the nodes go in a pose.
 
-use super::{position, solve, start, Elastic, Position, Relaxed};
+use super::turn::turned;
+use super::{apply, distance, position, solve, start, Elastic, Position, Relaxed};
 use crate::deformer::{Deformer, Pose};
 use crate::error::Error;
 use crate::mls::matrix::Matrix;
 use crate::mls::{best_rotation, Transform};
 use crate::softmax;
 
-/// Steepness of the passage to the thin plate, and where it is: how much better it must foretell.
-const PASSAGE: i32 = 6;
-const FORETELLS: f64 = 0.45;
-/// An error of foretelling that is rounding, in halves of the frame's longest side.
+/// By how much control points miss a rigid motion that is one but for rounding, in halves of the frame's longest side.
 const ROUNDING: f64 = 1e-9;
+/// Steps of the rotation of that motion.
+const POLISHED: usize = 2;
 
 impl Elastic {
     /// Where the nodes go in a pose, whose targets are those of an [`crate::Aim`]; `None` where nothing moves.
@@ -48,16 +48,45 @@ impl Elastic {
         let held = self.held(pose, transform);
         let frame = solve::Posed { w: &w, q: &landed, held: &held };
         let mut y_and_r = start::start(&self.rest, &self.body, &frame, rotations.collect());
-        let force = solve::solve(&self.rest, &self.body, &self.system, &frame, &mut y_and_r);
-        let (global, _, _) = nodes.global(pose)?;
+        solve::solve(&self.rest, &self.body, &self.system, &frame, &mut y_and_r);
         // It knows nothing of how control points are oriented.
-        let plate = self.plate.as_ref().filter(|_| held.iter().all(Option::is_none));
-        let plate = plate.map(|plate| plate.bent(&landed, &embedded(&global, self.dim)));
-        let share = plate.as_ref().map_or(0.0, |plate| {
-            1.0 / (1.0 + (FORETELLS * (plate.error + ROUNDING) / (force + ROUNDING)).powi(PASSAGE))
-        });
+        if held.iter().all(Option::is_none) {
+            let (rotation, _, _) = nodes.global(pose)?;
+            self.stiffen(&landed, &embedded(&rotation, self.dim), &mut y_and_r);
+        }
         let solve::Moved { y, maps } = y_and_r;
-        Ok(Some(Relaxed { x: self.nodes.clone(), y, maps, share, plate }))
+        Ok(Some(Relaxed { x: self.nodes.clone(), y, maps }))
+    }
+
+    /// Moves all nodes by the rigid motion of that rotation where it takes the control points to `q`: two control points, or some on a line,
+    /// leave a turn about it open, and rounding would decide.
+    fn stiffen(&self, q: &[Position], rotation: &Matrix<3>, moved: &mut solve::Moved) {
+        let mean = |points: &[Position]| -> Position {
+            std::array::from_fn(|k| points.iter().map(|x| x[k]).sum::<f64>() / q.len() as f64)
+        };
+        let (p_mean, q_mean) = (mean(&self.nodes[..q.len()]), mean(q));
+        let mut moment = [[0.0; 3]; 3];
+        for (q, p) in q.iter().zip(&self.nodes) {
+            (0..9).for_each(|at| {
+                moment[at / 3][at % 3] += (q[at / 3] - q_mean[at / 3]) * (p[at % 3] - p_mean[at % 3])
+            });
+        }
+        // To the last digits; about an axis that is open it stays.
+        let rotation = &turned(rotation, &moment, POLISHED);
+        let centre = apply(rotation, &p_mean);
+        let rigid = |x: &Position| -> Position {
+            let y = apply(rotation, x);
+            std::array::from_fn(|k| y[k] - centre[k] + q_mean[k])
+        };
+        let off = q.iter().zip(&self.nodes).map(|(q, p)| distance(q, &rigid(p))).fold(0.0, f64::max);
+        let share = 1.0 / (1.0 + (off / ROUNDING).powi(2));
+        for ((y, map), x) in moved.y.iter_mut().zip(&mut moved.maps).zip(&self.nodes) {
+            let all = rigid(x);
+            for k in 0..3 {
+                y[k] += share * (all[k] - y[k]);
+                (0..3).for_each(|c| map[k][c] += share * (rotation[k][c] - map[k][c]));
+            }
+        }
     }
 
     /// The maps of the control points that are oriented.

@@ -122,13 +122,6 @@ impl Lift {
         }
         y.iter_mut().for_each(|c| *c /= all);
         map.iter_mut().flatten().for_each(|e| *e /= all);
-        if let Some(plate) = relaxed.plate.as_ref().filter(|_| relaxed.share > 0.0) {
-            let (of_plate, map_of_plate) = plate.at(x);
-            for k in 0..3 {
-                y[k] += relaxed.share * (of_plate[k] - y[k]);
-                (0..3).for_each(|c| map[k][c] += relaxed.share * (map_of_plate[k][c] - map[k][c]));
-            }
-        }
         (y, map)
     }
 }

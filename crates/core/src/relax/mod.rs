@@ -4,7 +4,6 @@
 //! fit    some 500 nodes spread along the shape, the control points first; neighbours are linked, stiffly where the shape is wide
 //! frame  nodes go where links keep their lengths and turn with the shape, and where each node is rigid with the control points of which
 //!        it has most: both in the L1 sense, so that bending gathers at joints, and a node chooses whom it follows (solve)
-//!        if the motion is no rigid one of parts, a thin plate takes over (plate)
 //! points each by its nearest nodes, along the shape rather than through the air (lift)
 //! ```
 //!
@@ -22,14 +21,12 @@ use crate::weights::Weights;
 
 mod frame;
 mod lift;
-mod plate;
 mod solve;
 mod start;
 mod system;
 mod turn;
 
 pub use lift::Lift;
-use plate::{Bent, Plate};
 use solve::Rest;
 use system::System;
 
@@ -55,7 +52,6 @@ pub struct Elastic {
     logits: Vec<f32>,
     rest: Rest,
     system: System,
-    plate: Option<Plate>,
     near: Near,
     /// Square roots of the weights of the nodes at the temperature 1, node by node.
     roots: Vec<f32>,
@@ -81,9 +77,6 @@ pub struct Relaxed {
     x: Vec<Position>,
     y: Vec<Position>,
     maps: Vec<Matrix<3>>,
-    /// How much of the thin plate, and that.
-    share: f64,
-    plate: Option<Bent>,
 }
 
 impl Elastic {
@@ -139,9 +132,8 @@ impl Elastic {
             frame,
             p: p.to_vec(),
             world,
-            rest: Rest::new(&nodes, m, &body, &system),
+            rest: Rest::new(&nodes, m, &body),
             system,
-            plate: Plate::new(&nodes[..m], dim),
             near: Near::new(&nodes),
             roots: lift::roots(&logits, m),
             nodes,

@@ -6,7 +6,7 @@
 //! nodes     b_ij = w_ij / sqrt(|y_i - q_j - R_i (x_i - p_j)|^2 + (0.03 n0)^2): each node chooses the control points it is rigid with
 //! ```
 
-use super::system::{Factors, System};
+use super::system::System;
 use super::turn::turned;
 use super::{apply, distance, Body, Position};
 use crate::mls::matrix::Matrix;
@@ -34,8 +34,6 @@ pub(super) struct Rest {
     /// The median distance of a node to the nearest one that it is linked to.
     pub(super) spacing: f64,
     kappa: f64,
-    /// The force that moves each handle by 1 while the others stay and all else is at ease.
-    firm: Vec<f64>,
     starts: Vec<u32>,
     others: Vec<(u32, u32)>,
     arms: Vec<Position>,
@@ -55,7 +53,7 @@ pub(super) struct Moved {
 }
 
 impl Rest {
-    pub(super) fn new(nodes: &[Position], m: usize, body: &Body, system: &System) -> Rest {
+    pub(super) fn new(nodes: &[Position], m: usize, body: &Body) -> Rest {
         let mut starts = vec![0_u32; nodes.len() + 1];
         body.links.iter().flatten().for_each(|&end| starts[end as usize + 1] += 1);
         (1..starts.len()).for_each(|node| starts[node] += starts[node - 1]);
@@ -78,7 +76,7 @@ impl Rest {
         let arm = |[a, b]: &[u32; 2]| -> Position {
             std::array::from_fn(|k| nodes[*a as usize][k] - nodes[*b as usize][k])
         };
-        let mut rest = Rest {
+        Rest {
             m,
             nodes: nodes.to_vec(),
             apart,
@@ -88,13 +86,7 @@ impl Rest {
             starts,
             others,
             arms: body.links.iter().map(arm).collect(),
-            firm: Vec::new(),
-        };
-        if let Some(mut factors) = system.prepared() {
-            system.factor(&body.links, &body.stiffness, |_| 0.0, &mut factors);
-            rest.firm = (0..m).map(|i| firm(&rest, body, &mut factors, i)).collect();
         }
-        rest
     }
 
     /// The neighbours of a node, and by which links.
@@ -112,11 +104,11 @@ struct Attached {
     firm: f64,
 }
 
-/// Moves the nodes; gives by how much handles would have to give way for the links to be at ease.
-pub(super) fn solve(rest: &Rest, body: &Body, system: &System, posed: &Posed<'_>, moved: &mut Moved) -> f64 {
-    let Some(mut factors) = system.prepared() else { return 0.0 };
-    let (m, count) = (rest.m, rest.nodes.len());
-    let mut right: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; count - m]);
+/// Moves the nodes.
+pub(super) fn solve(rest: &Rest, body: &Body, system: &System, posed: &Posed<'_>, moved: &mut Moved) {
+    let Some(mut factors) = system.prepared() else { return };
+    let m = rest.m;
+    let mut right: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; rest.nodes.len() - m]);
     for round in 0..ROUNDS {
         let stiffness = reweighted(rest, body, moved);
         let firmness = rest.kappa * 10_f64.powf(round as f64 / (ROUNDS - 1) as f64 - 1.0);
@@ -129,45 +121,6 @@ pub(super) fn solve(rest: &Rest, body: &Body, system: &System, posed: &Posed<'_>
             settle(&right, m, &mut moved.y);
         }
     }
-    // What pulls at the handles when all links are as stiff as at first.
-    let none = vec![Attached::default(); count];
-    system.factor(&body.links, &body.stiffness, |_| 0.0, &mut factors);
-    let mut at_ease = Moved { y: moved.y.clone(), maps: moved.maps.clone() };
-    balance(rest, body, &body.stiffness, &none, &at_ease, &mut right);
-    factors.solve(&mut right);
-    settle(&right, m, &mut at_ease.y);
-    let give = |i: usize| -> f64 {
-        let mut force = [0.0; 3];
-        for (other, link) in rest.neighbours(i) {
-            let bent = bent(rest, &at_ease, i, other, link);
-            (0..3).for_each(|k| force[k] += body.stiffness[link] * bent[k]);
-        }
-        distance(&force, &[0.0; 3]) / rest.firm[i]
-    };
-    (0..m).map(give).sum::<f64>() / m as f64
-}
-
-/// `S_ii` of the Schur complement of the free nodes.
-fn firm(rest: &Rest, body: &Body, factors: &mut Factors, i: usize) -> f64 {
-    let mut column: Vec<f64> = vec![0.0; rest.nodes.len() - rest.m];
-    let mut own = 0.0;
-    for (other, link) in rest.neighbours(i) {
-        own += body.stiffness[link];
-        if other >= rest.m {
-            column[other - rest.m] += body.stiffness[link];
-        }
-    }
-    let before = column.clone();
-    factors.solve_one(&mut column);
-    own - before.iter().zip(&column).map(|(a, b)| a * b).sum::<f64>()
-}
-
-/// `y_i - y_j - (R_i + R_j) (x_i - x_j) / 2`.
-fn bent(rest: &Rest, moved: &Moved, i: usize, other: usize, link: usize) -> Position {
-    let sign = if i < other { 1.0 } else { -1.0 };
-    let (own, of_other) =
-        (apply(&moved.maps[i], &rest.arms[link]), apply(&moved.maps[other], &rest.arms[link]));
-    std::array::from_fn(|k| moved.y[i][k] - moved.y[other][k] - sign * 0.5 * (own[k] + of_other[k]))
 }
 
 /// The stiffness of links that are bent or stretched is less, in the mean as before.

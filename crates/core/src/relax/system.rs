@@ -97,9 +97,4 @@ impl Factors {
     pub(super) fn solve(&mut self, b: &mut [Vec<f64>; 3]) {
         b.iter_mut().for_each(|column| self.factors.solve(column));
     }
-
-    /// Solves for one of them.
-    pub(super) fn solve_one(&mut self, b: &mut [f64]) {
-        self.factors.solve(b);
-    }
 }
