@@ -85,12 +85,17 @@ def fitted(
     temperature: float,
     handles: Handles,
     relax: float = 0.0,
+    no_folds: bool = False,
     rotations: Rotations = None,
     scales: Scales = None,
     names: Sequence[str] | None = None,
     shape: tuple[NDArray[np.float64], NDArray[np.uint32]] | None = None,
+    **parameters: float | None,
 ) -> Map:
-    """Return the map of weights that were fitted already, as `advise` has its parameters; `shape`: for `relax`."""
+    """Return the map of weights that were fitted already, as `advise` has its parameters.
+
+    `shape`: for `relax` and `no_folds`; `parameters`: of the weights, for further steps.
+    """
     p = weights.control_points
     q = as_points("targets", targets, p.shape[1])
     if len(q) != len(p):
@@ -106,6 +111,8 @@ def fitted(
         temperature=temperature,
         handles=handles,
         relax=relax,
+        no_folds=no_folds,
+        **parameters,
     )
     return Map._of(_core.Map.of(session._core, weights._core, shape))
 

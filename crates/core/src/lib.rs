@@ -9,6 +9,7 @@
 //! | `mls` | weights and moved control points -> a rigid, similarity or affine map a point |
 //! | `deformer` | joins them: points bound to weights once, deformed many times |
 //! | `aim` | the targets with which control points arrive |
+//! | `compose` | many small maps, one after the other, that fold nothing |
 //! | `relax` | what control points leave open, decided by the shape's own stiffness |
 //! | `probe`, `advice` | a deformation looked at in places all over a shape; what is likely bad about it, and which setting would help |
 //! | `geometry` | coordinates relative to a box, a kd-tree over points, [`placement`] of control points |
@@ -22,6 +23,7 @@
 mod advice;
 mod aim;
 mod check;
+mod compose;
 mod deformer;
 mod error;
 mod geometry;
@@ -34,6 +36,7 @@ mod weights;
 
 pub use advice::{Advice, Better, Kind};
 pub use aim::{Aim, Anchor, Handles, Remedy, Soft, Stiff};
+pub use compose::{Composed, Found, Refit, Rules, Step, Watched, MOST_STEPS};
 pub use deformer::{Deformed, Deformer, Pose};
 pub use error::Error;
 pub use geometry::{placement, Frame, Order, PointTree};

@@ -64,6 +64,7 @@ impl Map {
         probe.set_transform(self.transform());
         probe.set_careful(self.session().settings.handles != HandlesSetting::Exact);
         probe.set_relax(self.session().settings.relax);
+        probe.set_composed(self.steps().cloned());
     }
 
     /// What this map does at the places that are probed.
@@ -143,7 +144,7 @@ impl Map {
     fn misses(&self) -> Result<Option<Advice>, Error> {
         let points = &self.session().points;
         let (dim, aim, posed) = (points.dim(), self.aim()?, self.session().posed());
-        let landed = self.handles().land(posed.aimed(&aim), self.session().settings.temperature)?;
+        let landed = self.landed(&aim)?.positions;
         let each = |a: &[f64], b: &[f64]| -> Vec<f64> {
             a.chunks_exact(dim).zip(b.chunks_exact(dim)).map(|(a, b)| distance(a, b)).collect()
         };
@@ -215,6 +216,9 @@ impl Map {
         other: Other<'_>,
         part: impl Fn((f64, f64)) -> f64,
     ) -> Result<Option<String>, Error> {
+        if self.steps().is_some() {
+            return Ok(None);
+        }
         let Some(other) = other() else {
             return Ok(None);
         };

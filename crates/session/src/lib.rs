@@ -5,7 +5,7 @@
 //! |---|---|
 //! | [`control_points`] | the checked list: where a shape is held, and where it is moved to |
 //! | [`orientation`] | the rotation and the scale that a control point may carry |
-//! | [`settings`] | weights, transform, temperature, handles, relax, with their defaults and ranges |
+//! | [`settings`] | weights, transform, temperature, handles, relax, no_folds, with their defaults and ranges |
 //! | [`session`] | all of it together, and what reading a file gives |
 //! | [`files`] | one file a format: bytes -> session, session -> text |
 //! | [`map`] | a fitted session: where each point of space goes; [`map_file`]: saved |
@@ -25,6 +25,7 @@ pub mod report;
 pub mod session;
 pub mod settings;
 mod text;
+mod unfolded;
 mod words;
 
 pub use advice::{to_json as advice_to_json, Advice};

@@ -67,7 +67,7 @@ def deform(
 
     Writes the same files with new positions. Everything else in them is carried over; unmoved control
     points give the very same bytes. Several shapes are bent by one map, so that they stay together.
-    What a session sets (weights, transform, temperature, handles, relax) holds where no option says otherwise.
+    What a session sets (weights, transform, temperature, handles, relax, no_folds) holds where no option says otherwise.
 
     Example: neuralmls deform chair.obj --points chair.json -o bent.obj
     """
@@ -154,7 +154,7 @@ def _session(
     ready = Map.load(saved)
     if session is None:
         return ready.session, ready, ()
-    shared = ("transform", "temperature", "handles", "relax")
+    shared = ("transform", "temperature", "handles", "relax", "no_folds")
     said = {key: session.settings[key] for key in shared if session.has_settings}
     try:
         ready = ready.with_session(ready.session.replace(points=session.points, **said))

@@ -111,7 +111,7 @@ pub fn best_rotation<const D: usize>(c: &Matrix<D>) -> Matrix<D> {
 }
 
 /// Its quaternion, in 3D.
-pub(super) fn best_quaternion<const D: usize>(c: &Matrix<D>) -> [f64; 4] {
+pub(crate) fn best_quaternion<const D: usize>(c: &Matrix<D>) -> [f64; 4] {
     let (values, vectors) = eigen(horn(c));
     unit(&vectors, greatest(&values))
 }
