@@ -8,6 +8,7 @@
 //! | [`softmax`] | logits at a temperature -> weights, and the form of them that stays accurate however small T is |
 //! | `mls` | weights and moved control points -> a rigid, similarity or affine map a point |
 //! | `deformer` | joins them: points bound to weights once, deformed many times |
+//! | `inverse` | the whole map's Jacobian, and from where a point came |
 //! | `aim` | the targets with which control points arrive |
 //! | `compose` | many small maps, one after the other, that fold nothing |
 //! | `relax` | what control points leave open, decided by the shape's own stiffness |
@@ -27,6 +28,7 @@ mod compose;
 mod deformer;
 mod error;
 mod geometry;
+mod inverse;
 mod machine;
 mod mls;
 mod probe;
@@ -40,6 +42,7 @@ pub use compose::{Composed, Found, Refit, Rules, Step, Watched, MOST_STEPS};
 pub use deformer::{Deformed, Deformer, Pose};
 pub use error::Error;
 pub use geometry::{placement, Frame, Order, PointTree};
+pub use inverse::{Inverse, Motion};
 pub use machine::{memory, progress};
 pub use mls::{best_rotation, piece, Piece, Transform, ANCHOR_WEIGHT, RIDGE};
 pub use probe::{places, Look, Probe, PLACES};

@@ -58,7 +58,7 @@ impl<const D: usize> Global<D> {
         let scale = similarity::scale(&moments, &rotation, 1.0);
         let mut residuals = Moments::new(p, q, &equal, dominant, Some(&rotation));
         oriented::add(&mut residuals, oriented, &equal, dominant, Some(&rotation));
-        let linear = affine::linear(&residuals, &rotation);
+        let linear = affine::linear(&residuals.pq, &residuals.pp, &rotation);
         Global { rotation, scale, linear }
     }
 }
