@@ -167,9 +167,9 @@ def bars() -> None:
     x, faces = bar()
     cases: list[tuple[str, nm.ControlPoints]] = []
     for degrees in (170, 300):
-        p = rings(5)
+        p = rings(7)
         cases.append((f"bent by {degrees}, rings", nm.ControlPoints(p, bent(p, degrees))))
-    for degrees, count in ((170, 4), (360, 7), (720, 13)):
+    for degrees, count in ((170, 7), (360, 7), (720, 13)):
         p = rings(count)
         cases.append((f"twisted by {degrees}, rings", nm.ControlPoints(p, rotated(p, 0, degrees * (p[:, 0] + 3) / 6))))
     for degrees in (170, 360, 720):
@@ -194,17 +194,20 @@ def bars() -> None:
 
 
 def monotone(map: nm.Map, name: str) -> str:
-    """Whether the bar turns the same way all along, and by how much in all."""
-    along = np.linspace(-3, 3, 400)
-    line = np.stack([along, 0 * along, 0 * along], axis=1)
-    middle, beside = map.at(line), map.at(line + (0, 0.3, 0))
-    arm = beside - middle
-    if name.startswith("bent"):
-        angle = np.unwrap(np.arctan2(-arm[:, 0], arm[:, 1]))
-    else:
-        angle = np.unwrap(np.arctan2(arm[:, 2], arm[:, 1]))
-    turned = np.degrees(np.diff(angle))
-    return f"{'yes' if turned.min() > -0.01 else f'no, back by {-turned.min():.2f}'}, {turned.sum():.0f} in all"
+    """Whether the bar's sections turn the same way all along, to a hundredth of the whole, and by how much in all."""
+    along, around = np.linspace(-2.99, 2.99, 200), np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    arms = 0.4 * np.stack([np.zeros(24), np.cos(around), np.sin(around)], axis=1)
+    y = map.at((np.array([1.0, 0, 0]) * along[:, None, None] + arms).reshape(-1, 3)).reshape(200, 24, 3)
+    y -= y.mean(axis=1, keepdims=True)
+    u, v, arm = (0, 1, (-1, 0)) if name.startswith("bent") else (2, 1, (1, 0))
+    # The rotation in the plane u, v that fits the section best.
+    b, c = arms[:, 1], arms[:, 2]
+    sin, cos = (y[..., u] * b).sum(axis=1) * arm[0], (y[..., v] * b).sum(axis=1)
+    if not name.startswith("bent"):
+        sin, cos = sin - (y[..., 1] * c).sum(axis=1), cos + (y[..., 2] * c).sum(axis=1)
+    angle = np.degrees(np.unwrap(np.arctan2(sin, cos)))
+    back, whole = -np.diff(angle).min(), angle[-1] - angle[0]
+    return f"{'yes' if back < 1e-2 * abs(whole) else f'no, back by {back:.2f}'}, {whole:.0f} in all"
 
 
 def main() -> None:

@@ -444,7 +444,7 @@ class Map:
         - ungoverned: a part that moves, and is far from all control points.
 
         What would help was tried: another temperature, soft handles and, where neither does, shape-aware weights
-        are named only where they at least halve it; exact handles only where they arrive.
+        are named only where they at least halve it, as is `no_folds` for folds; exact handles only where they arrive.
 
         Parameters
         ----------

@@ -296,7 +296,7 @@ impl Map {
                 found.map_err(|error| failed = Some(error)).ok().flatten().map(|map| map.get().0.clone())
             })
         };
-        let found = py.detach(|| self.0.advise(&self.0.probe(x, faces)?, &mut made)).map_err(raised)?;
+        let found = py.detach(|| self.0.advise(&self.0.probe(x, faces)?, &mut made, true)).map_err(raised)?;
         let told = |advice: Advice| {
             (advice.kind, advice.sentence, advice.place, advice.control_points, advice.amount)
         };

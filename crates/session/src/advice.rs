@@ -79,11 +79,11 @@ impl Map {
     /// What is likely bad about the shape that was probed, and what would help; nothing where everything moves as one.
     ///
     /// What would help was tried: another temperature, soft handles and, where neither does, `other` weights are named only where they at
-    /// least halve it; exact handles only where they arrive.
+    /// least halve it; exact handles only where they arrive. Where `unfolds`, `no_folds` is tried for folds, which takes as long as a fit with it.
     ///
     /// # Errors
     /// As [`Map::aim`].
-    pub fn advise(&self, probe: &Probe, other: Other<'_>) -> Result<Vec<Advice>, Error> {
+    pub fn advise(&self, probe: &Probe, other: Other<'_>, unfolds: bool) -> Result<Vec<Advice>, Error> {
         let (points, settings) = (&self.session().points, &self.session().settings);
         let posed = self.session().posed();
         let pose = posed.pose();
@@ -100,11 +100,13 @@ impl Map {
                             "move the control points there less far towards or past each other".into(),
                         ),
                     };
+                    let in_steps = if unfolds { self.in_steps(probe, part) } else { None };
                     let sentence = format!(
-                        "{} of the shape is folded over, most of all near {}, at {}; {help}",
+                        "{} of the shape is folded over, most of all near {}, at {}; {help}{}",
                         percent(part),
                         quoted(&points[first].name),
-                        place(&at)
+                        place(&at),
+                        in_steps.unwrap_or_default()
                     );
                     ("folds", part, sentence, vec![first])
                 }

@@ -23,7 +23,10 @@ impl Map {
     /// assert!(jacobian[0].abs() < 1e-9 && (jacobian[2] - 1.0).abs() < 1e-9);
     /// ```
     pub fn jacobian(&self, x: &[f64], progress: &mut Progress<'_>) -> Result<Vec<f64>, Error> {
-        self.in_motion(|motion| Ok(motion.jacobians(x, progress)?))
+        match self.steps() {
+            Some(composed) => Ok(composed.jacobians(x, progress)?),
+            None => self.in_motion(|motion| Ok(motion.jacobians(x, progress)?)),
+        }
     }
 
     /// From where the points `y` (n x dim) came: `x` with `f(x) = y` and `det J(x) > 0`; with the maps back if `maps`. Where none was found they are
@@ -37,7 +40,10 @@ impl Map {
         maps: bool,
         progress: &mut Progress<'_>,
     ) -> Result<Inverse, Error> {
-        self.in_motion(|motion| Ok(motion.inverse(y, maps, progress)?))
+        match self.steps() {
+            Some(composed) => Ok(composed.inverse(y, maps, progress)?),
+            None => self.in_motion(|motion| Ok(motion.inverse(y, maps, progress)?)),
+        }
     }
 
     /// The same of points that all came from somewhere.
@@ -56,7 +62,7 @@ impl Map {
         )))
     }
 
-    /// Calls `work` with the map as the core has it.
+    /// Calls `work` with the map, of one step, as the core has it.
     fn in_motion<R>(&self, work: impl FnOnce(&Motion<'_>) -> Result<R, Error>) -> Result<R, Error> {
         let settings = &self.session().settings;
         if settings.relax > 0.0 {

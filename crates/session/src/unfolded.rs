@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use neuralmls_core::progress::Progress;
-use neuralmls_core::{Composed, Frame, InverseDistance, Rules, Schedule, Training, Watched, Weights};
+use neuralmls_core::{Composed, Frame, InverseDistance, Probe, Rules, Schedule, Training, Watched, Weights};
 
 use crate::text::general;
 use crate::words::{percent, place};
@@ -48,6 +48,21 @@ impl Session {
 }
 
 impl Map {
+    /// Whether `no_folds` at least halves the part of the shape that is folded, in words.
+    pub(crate) fn in_steps(&self, probe: &Probe, now: f64) -> Option<String> {
+        let mut session = self.session().clone();
+        if session.settings.no_folds {
+            return None;
+        }
+        session.settings.no_folds = true;
+        session.settings.check().ok()?; // what it does not go with, it cannot help
+        let watched = Watched::of(probe.places().to_vec(), session.points.dim()).ok()?;
+        let composed = session.unfold(self.shared_weights(), &watched, &mut |_| true).ok()?;
+        let then = composed.found().folded;
+        (then <= now / 2.0)
+            .then(|| format!("; in {} steps, with no_folds, it is {}", composed.steps().len(), percent(then)))
+    }
+
     /// What of the shape folds all the same, in words.
     pub(crate) fn still_folded(&self) -> Option<String> {
         let composed = self.composed()?;

@@ -8,6 +8,7 @@
 //! are now, and aimed at the next places on their way (`path`). How long the steps are is searched for (`search`), at places on a shape and
 //! around it (`watched`): there nothing folds, and at others this is checked. Where one step folds nothing, it is that one.
 
+mod back;
 mod path;
 mod search;
 mod watched;

@@ -47,7 +47,8 @@ fn search(p: &[f64], x: &[f64], dim: usize, pose: Pose<'_>, rules: Rules<'_>) ->
 }
 
 fn at(composed: &Composed, x: &[f64]) -> Vec<f64> {
-    let bound = Deformer::new(x.to_vec(), &composed.steps()[0].weights, None, composed.transform, &mut |_| true);
+    let bound =
+        Deformer::new(x.to_vec(), &composed.steps()[0].weights, None, composed.transform, &mut |_| true);
     composed.deform(&bound.unwrap(), false, &mut |_| true).unwrap().positions
 }
 
@@ -58,7 +59,8 @@ fn off(a: &[f64], b: &[f64]) -> f64 {
 
 /// A point of the plane through its neighbour's place, and past it.
 fn past_each_other() -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-    let grid: Vec<f64> = (0..2500).flat_map(|i| [f64::from(i % 50) / 49.0, f64::from(i / 50) / 49.0]).collect();
+    let grid: Vec<f64> =
+        (0..2500).flat_map(|i| [f64::from(i % 50) / 49.0, f64::from(i / 50) / 49.0]).collect();
     let p = vec![0.2, 0.5, 0.45, 0.5, 0.8, 0.2, 0.8, 0.8, 0.2, 0.1, 0.2, 0.9];
     let mut q = p.clone();
     (q[0], q[1]) = (0.6, 0.55);
@@ -68,7 +70,8 @@ fn past_each_other() -> (Vec<f64>, Vec<f64>, Vec<f64>) {
 #[test]
 fn what_folds_in_one_step_folds_nothing_in_several_and_arrives() {
     let (x, p, q) = past_each_other();
-    let one = Deformer::new(x.clone(), &fitted(&p, 2, Frame::around(&x, 2)), None, Rigid, &mut |_| true).unwrap();
+    let one =
+        Deformer::new(x.clone(), &fitted(&p, 2, Frame::around(&x, 2)), None, Rigid, &mut |_| true).unwrap();
     let flat = one.deform(&q, 1.0, false, &mut |_| true).unwrap().positions;
     for transform in [Rigid, Similarity, Affine] {
         let composed = search(&p, &x, 2, Pose::from(&q), rules(transform, None));
@@ -204,7 +207,8 @@ fn the_same_twice_and_networks_too() {
                 true
             };
             let rules = rules(Rigid, None);
-            let composed = Composed::search(weights.clone(), &q, rules, &watched, refit, &mut progress).unwrap();
+            let composed =
+                Composed::search(weights.clone(), &q, rules, &watched, refit, &mut progress).unwrap();
             assert!(composed.steps().len() > 1 && off(&composed.land().unwrap().positions, &q) < 1e-6);
             at(&composed, &x)
         })
@@ -221,9 +225,39 @@ fn the_same_twice_and_networks_too() {
 }
 
 #[test]
+fn steps_are_undone_and_their_jacobians_multiplied() {
+    let (x, p, q) = past_each_other();
+    let composed = search(&p, &x, 2, Pose::from(&q), rules(Rigid, None));
+    let some: Vec<f64> = x.chunks_exact(2).step_by(37).flatten().copied().collect();
+    let y = at(&composed, &some);
+    let back = composed.inverse(&y, true, &mut |_| true).unwrap();
+    assert!(back.missed.is_empty() && off(&back.points, &some) < 1e-9, "{}", off(&back.points, &some));
+    let bound =
+        Deformer::new(some.clone(), &composed.steps()[0].weights, None, Rigid, &mut |_| true).unwrap();
+    let mut product = composed.deform(&bound, true, &mut |_| true).unwrap().maps.unwrap();
+    multiply(&back.maps.unwrap(), &mut product, 2);
+    assert!(off(&product, &[1.0, 0.0, 0.0, 1.0].repeat(some.len() / 2)) < 1e-6);
+    let jacobians = composed.jacobians(&some, &mut |_| true).unwrap();
+    for axis in 0..2 {
+        let beside = |way: f64| {
+            let mut beside = some.clone();
+            beside.iter_mut().skip(axis).step_by(2).for_each(|c| *c += way * 1e-5);
+            at(&composed, &beside)
+        };
+        let (up, down) = (beside(1.0), beside(-1.0));
+        for (k, (up, down)) in up.iter().zip(&down).enumerate() {
+            let expected = (up - down) / 2e-5;
+            let found = jacobians[4 * (k / 2) + 2 * (k % 2) + axis];
+            assert!((found - expected).abs() < 1e-3 * expected.abs().max(1.0), "{found} {expected}");
+        }
+    }
+}
+
+#[test]
 fn one_dimension_has_no_turns() {
     let x: Vec<f64> = (0..200).map(|i| f64::from(i) / 100.0).collect();
-    let composed = search(&[0.0, 0.9, 1.1, 2.0], &x, 1, Pose::from(&[0.0, 1.4, 1.5, 2.0]), rules(Rigid, None));
+    let composed =
+        search(&[0.0, 0.9, 1.1, 2.0], &x, 1, Pose::from(&[0.0, 1.4, 1.5, 2.0]), rules(Rigid, None));
     assert!(off(&composed.land().unwrap().positions, &[0.0, 1.4, 1.5, 2.0]) < 1e-9);
     assert!(composed.found().least > 0.0 && at(&composed, &x).is_sorted());
 }
