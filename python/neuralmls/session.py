@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from neuralmls import _core, session_files
 from neuralmls import _core as core  # where a class has an attribute of that name
-from neuralmls.arrays import Progress, as_box, as_points, box_around
+from neuralmls.arrays import Progress, as_box, as_points, as_rows, box_around
 from neuralmls.control_points import ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
@@ -22,6 +22,7 @@ from neuralmls.report import Advice, Look, Report
 from neuralmls.settings import Handles, Transform, WeightsName, changes_of
 from neuralmls.shape import Shape
 from neuralmls.shapes_together import box_of, together
+from neuralmls.space import Space
 from neuralmls.tables import fact_table
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
 from neuralmls.weights.softmax import softmax
@@ -262,7 +263,7 @@ class Session:
         return _restored_session, (self._core.to_json(), self._notes)
 
 
-class Map:
+class Map(Space):
     """A fitted session: where each point of space goes. Made by `Session.fit` or `Map.load`.
 
     The same map gives the same result for every file, block, process and machine, to rounding: bodies and their
@@ -335,14 +336,22 @@ class Map:
         return Map._of(self._core.with_session(self._core.session.with_points(points._core)))
 
     def at(self, points: ArrayLike, *, progress: Progress | None = None) -> Floats:
-        """Return where points (n, d) go, float32 if they are, else float64.
+        """Return where points (n, d), or a grid of them (h, w, 2), (d, h, w, 3), go: float32 if they are, else float64.
 
         Raises
         ------
         ArgumentError
             They are no finite points of the map's dimension.
+
+        Examples
+        --------
+        >>> map = Session(ControlPoints([[0.0, 0]], targets=[[1.0, 0]]), weights="inverse-distance").fit()
+        >>> map.at(np.zeros((4, 5, 2))).shape
+        (4, 5, 2)
         """
-        return self.deform(points, progress=progress)
+        rows, grid = as_rows(points)
+        y = self.deform(rows, progress=progress)
+        return y if grid is None else y.reshape(*grid, -1)
 
     @overload
     def deform(

@@ -35,6 +35,8 @@ struct Scratch<const D: usize> {
     slopes: Vec<[f64; D]>,
     relative: Vec<f64>,
     duals: Vec<Dual<D>>,
+    /// The rotation of the point before, which is often near.
+    near: [f64; 4],
 }
 
 impl<const D: usize> Field<'_, D> {
@@ -59,6 +61,7 @@ impl<const D: usize> Field<'_, D> {
                 slopes: vec![[0.0; D]; m],
                 relative: vec![0.0; m],
                 duals: vec![Dual { value: 0.0, slope: [0.0; D] }; m],
+                near: [1.0, 0.0, 0.0, 0.0],
             };
             for (i, out) in out.chunks_exact_mut(per).enumerate() {
                 let i = BLOCK * block + i;
@@ -88,14 +91,14 @@ impl<const D: usize> Field<'_, D> {
             }
         }
         let dominant = self.differentiate_weights(scratch);
-        let (local, jacobian) = self.mls.differentiate(&at, &scratch.duals, dominant);
+        let (local, jacobian) = self.mls.differentiate(&at, &scratch.duals, dominant, &mut scratch.near);
         let y = std::array::from_fn(|k| x[k] + self.frame.half * local.displacement[k]);
         Place { y, map: local.map, jacobian }
     }
 
     /// `dw_i = w_i (dl_i - sum_j w_j dl_j) / T`, of weights relative to the second-largest.
     fn differentiate_weights(&self, scratch: &mut Scratch<D>) -> Dominant<Dual<D>> {
-        let Scratch { logits, slopes, relative, duals } = scratch;
+        let Scratch { logits, slopes, relative, duals, .. } = scratch;
         let Dominant { index, second } = relative_weights(logits, self.temperature, relative);
         let runner = (0..logits.len()).find(|&i| i != index && relative[i] == 1.0).unwrap_or(index);
         let rest: f64 = relative.iter().sum();

@@ -14,19 +14,20 @@ const SAMPLES: [usize; 3] = [257, 65, 17];
 /// How far they reach, in parts of the frame: what is around a shape moves too.
 const REACH: f64 = 1.25;
 /// Samples that are tried for a point, one after the other.
-const STARTS: usize = 8;
+const STARTS: usize = 6;
 /// Evaluations from one sample: full steps need 3 to 5, and each halving is one.
-const ROUNDS: usize = 40;
+const ROUNDS: usize = 25;
 /// The least part of a step.
-const LEAST: f64 = 1.0 / 4096.0;
+const LEAST: f64 = 1.0 / 256.0;
 /// How far a point is still from its place when the last step is taken, in halves of the frame. What that leaves is about the square of it.
-const CLOSE: f64 = 1e-8;
+const CLOSE: f64 = 1e-7;
 /// The same of a network, whose logits are in single precision: what they round moves places by about 1e-7.
 const CLOSE_SINGLE: f64 = 5e-7;
-/// What counts as arrived if no step comes nearer, in parts of that.
-const ARRIVED: f64 = 4.0;
-/// Rounding of a coordinate, in parts of [`CLOSE`] of itself.
-const ROUNDED: f64 = 4.0 * f64::EPSILON / CLOSE;
+/// What counts as arrived where no step comes nearer; of a network.
+const ARRIVED: f64 = 1e-9;
+const ARRIVED_SINGLE: f64 = 2e-6;
+/// Rounding of a coordinate, in parts of [`ARRIVED`] of itself.
+const ROUNDED: f64 = 4.0 * f64::EPSILON / ARRIVED;
 
 /// Samples of the map, by where they go.
 pub(super) struct Starts<const D: usize> {
@@ -95,11 +96,11 @@ pub(super) fn seek<const D: usize>(
     seeks: &mut Vec<Seek<D>>,
     progress: &mut Progress<'_>,
 ) -> Result<(), Error> {
-    let close = match field.weights {
-        Weights::InverseDistance(_) => CLOSE,
-        _ => CLOSE_SINGLE,
+    let (close, arrived) = match field.weights {
+        Weights::InverseDistance(_) => (CLOSE, ARRIVED),
+        _ => (CLOSE_SINGLE, ARRIVED_SINGLE),
     };
-    let rule = Rule { field, starts, close };
+    let rule = Rule { field, starts, close, arrived };
     seeks.extend(y.chunks_exact(D).map(|y| {
         let target = std::array::from_fn(|k| y[k]);
         Seek {
@@ -143,6 +144,7 @@ struct Rule<'a, const D: usize> {
     field: &'a Field<'a, D>,
     starts: &'a Starts<D>,
     close: f64,
+    arrived: f64,
 }
 
 impl<const D: usize> Rule<'_, D> {
@@ -194,7 +196,7 @@ impl<const D: usize> Rule<'_, D> {
 
     /// No step leads on from where it is.
     fn give_up(&self, seek: &mut Seek<D>) {
-        if seek.upright && seek.left <= ARRIVED * self.close * self.unit(seek) {
+        if seek.upright && seek.left <= self.arrived * self.unit(seek) {
             (seek.found, seek.done) = (true, true);
             return;
         }

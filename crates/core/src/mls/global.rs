@@ -210,7 +210,7 @@ impl Arm {
 }
 
 /// The quaternion `(1, z)` times `u`, its length 1.
-fn turned_by(&[w, x, y, z]: &[f64; 4], t: &[f64; 3]) -> [f64; 4] {
+pub(super) fn turned_by(&[w, x, y, z]: &[f64; 4], t: &[f64; 3]) -> [f64; 4] {
     let u = [
         w - t[0] * x - t[1] * y - t[2] * z,
         x + t[0] * w + t[1] * z - t[2] * y,

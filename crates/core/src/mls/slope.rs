@@ -21,20 +21,22 @@ use crate::softmax::Dominant;
 type DualMatrix<const D: usize> = [[Dual<D>; D]; D];
 
 impl<const D: usize> Mls<'_, D> {
-    /// As [`Mls::deform`], of weights with their derivatives; and the Jacobian of where the point goes.
+    /// As [`Mls::deform`], of weights with their derivatives; and the Jacobian of where the point goes. `near` is the quaternion of a rotation that is
+    /// near that of the point, and becomes its own.
     pub(crate) fn differentiate(
         &self,
         x: &[f64; D],
         relative: &[Dual<D>],
         dominant: Dominant<Dual<D>>,
+        near: &mut [f64; 4],
     ) -> (Local<D>, Matrix<D>) {
         let base = (self.transform == Transform::Affine).then_some(&self.anchor.linear);
         let mut moments = Moments::new(self.p, self.q, relative, dominant, base);
         let added = oriented::add(&mut moments, &self.oriented, relative, dominant, base);
         let map: DualMatrix<D> = match self.transform {
-            Transform::Rigid => turned(&moments.pq, &self.anchor.rotation),
+            Transform::Rigid => turned(&moments.pq, &self.anchor.rotation, near),
             Transform::Similarity => {
-                let rotation = turned(&moments.pq, &self.anchor.rotation);
+                let rotation = turned(&moments.pq, &self.anchor.rotation, near);
                 added.align(&mut moments, &rotation);
                 let scale = scale(&moments, &rotation, self.anchor.scale);
                 rotation.map(|row| row.map(|e| e * scale))
@@ -84,9 +86,9 @@ fn sum_of_products<const D: usize>(a: &Matrix<D>, b: &Matrix<D>) -> f64 {
 }
 
 /// The rule for the rotation ([`rotation::anchored`]).
-fn turned<const D: usize>(moment: &DualMatrix<D>, g: &Matrix<D>) -> DualMatrix<D> {
+fn turned<const D: usize>(moment: &DualMatrix<D>, g: &Matrix<D>, near: &mut [f64; 4]) -> DualMatrix<D> {
     let value = values(moment);
-    let r = rotation::anchored(&value, g);
+    let r = rotation::anchored_near(&value, g, near);
     let size = norm(&value);
     let inverse = 1.0 / size;
     if D == 1 || size == 0.0 || !inverse.is_finite() {
