@@ -1,4 +1,4 @@
-"""What maps that fold nothing hold: `python -m studies.folds FOLDER [--shapes N] [--seeds N]`; FOLDER holds `organic/`, `shapenet/`.
+"""What maps that fold nothing hold: `python -m studies.folds FOLDER`; FOLDER holds `organic/` and `shapenet/`.
 
 Drags: every control point of ten shapes is moved by a normal number on each axis, of 10 and 20 % of the longest side;
 12 and 40 of them, neural and inverse-distance weights. `det J` (central differences over 1e-4 of the side) is looked at
@@ -102,7 +102,10 @@ def drag(shape: Shape, count: int, part: float, kind: str, seed: int) -> dict[st
 def drags(folder: Path, most: int, seeds: int) -> None:
     """A table, a line a kind of run."""
     all_shapes = list(shapes(folder))[:most]
-    print("| weights | control points | drag | runs | folded, one step | folded | places on | around | most steps | miss | s |")
+    print(
+        "| weights | control points | drag | runs | folded, one step | folded | places on | around | most steps "
+        "| miss | s |"
+    )
     print("|---|---|---|---|---|---|---|---|---|---|---|")
     for kind in KINDS:
         for count in (12, 40):
@@ -118,7 +121,8 @@ def drags(folder: Path, most: int, seeds: int) -> None:
                 print(
                     f"| {kind} | {count} | {part:.0%} | {len(runs)} | {(column['one'] > 0).sum()} "
                     f"| {(column['folded'] > 0).sum()} | {column['folded'].max():.2%} | {column['around'].max():.2%} "
-                    f"| {column['steps'].max():.0f} | {column['miss'].max():.0e} | {np.median(column['seconds']):.2f} |",
+                    f"| {column['steps'].max():.0f} | {column['miss'].max():.0e} "
+                    f"| {np.median(column['seconds']):.2f} |",
                     flush=True,
                 )
 

@@ -90,11 +90,11 @@ def fitted(
     scales: Scales = None,
     names: Sequence[str] | None = None,
     shape: tuple[NDArray[np.float64], NDArray[np.uint32]] | None = None,
-    **parameters: float | None,
+    seed: int | None = None,
 ) -> Map:
     """Return the map of weights that were fitted already, as `advise` has its parameters.
 
-    `shape`: for `relax` and `no_folds`; `parameters`: of the weights, for further steps.
+    `shape`: for `relax` and `no_folds`; `seed`: of the networks of further steps.
     """
     p = weights.control_points
     q = as_points("targets", targets, p.shape[1])
@@ -112,8 +112,9 @@ def fitted(
         handles=handles,
         relax=relax,
         no_folds=no_folds,
-        **parameters,
     )
+    if seed is not None:
+        session = session.replace(seed=seed)
     return Map._of(_core.Map.of(session._core, weights._core, shape))
 
 

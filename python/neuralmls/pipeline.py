@@ -111,7 +111,7 @@ def deform(
             rotations=rotations,
             scales=scales,
             shape=(points, as_indices(faces, len(points))),
-            **({"seed": seed} if no_folds and isinstance(function, NeuralWeights) else {}),
+            seed=seed if isinstance(function, NeuralWeights) else None,
         )
         return map.at(x)
     # Logits of someone's own: the same steps, of which a map would keep the weights.

@@ -168,7 +168,7 @@ class Session:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """Weights with their parameters, transform, temperature, handles, relax, no_folds, as the session file has them."""
+        """Weights with parameters, transform, temperature, handles, relax, no_folds, as the session file has them."""
         found: dict[str, Any] = json.loads(self._core.settings)
         return found
 
@@ -230,7 +230,8 @@ class Session:
         ----------
         shapes : Shape, or points (n, d)
             What it is for: the weights are trained in the box around all of them, unless the session has its own frame;
-            shape-aware weights learn from all of them, `relax` takes their stiffness, and `no_folds` looks for folds there. Without any, in the box of
+            shape-aware weights learn from all of them, `relax` takes their stiffness, and
+            `no_folds` looks for folds there. Without any, in the box of
             the control points.
         faces : (f, 3) integers, optional
             Triangles of the points, where one array of points is all there is.

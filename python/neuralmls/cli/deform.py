@@ -70,7 +70,8 @@ def deform(
 
     Writes the same files with new positions. Everything else in them is carried over; unmoved control
     points give the very same bytes. Several shapes are bent by one map, so that they stay together.
-    What a session sets (weights, transform, temperature, handles, relax, no_folds) holds where no option says otherwise.
+    What a session sets (weights, transform, temperature, handles, relax, no_folds) holds where no option says
+    otherwise.
 
     Example: neuralmls deform chair.obj --points chair.json -o bent.obj
     """

@@ -62,15 +62,27 @@ impl Composed {
         progress: &mut Progress<'_>,
     ) -> Result<Composed, Error> {
         let pose = pose.into();
-        let travellers = watched.travellers(false);
-        let whole = Stand::new(weights, travellers, rules)?;
-        report(progress, 0.0)?;
-        let (steps, misses) = match whole.weights.dim() {
-            1 => steps::<1>(whole, pose, rules, refit, progress)?,
-            2 => steps::<2>(whole, pose, rules, refit, progress)?,
-            _ => steps::<3>(whole, pose, rules, refit, progress)?,
+        let mut most: f64 = 0.0;
+        let progress = &mut |done: f64| {
+            most = most.max(done);
+            progress(most)
         };
-        let found = checked(&steps, rules, watched, progress)?;
+        report(progress, 0.0)?;
+        let mut tried = |one: bool| {
+            let stand = Stand::new(weights.clone(), watched.travellers(false), rules)?;
+            let (steps, misses) = match weights.dim() {
+                1 => steps::<1>(stand, pose, rules, one, refit, progress)?,
+                2 => steps::<2>(stand, pose, rules, one, refit, progress)?,
+                _ => steps::<3>(stand, pose, rules, one, refit, progress)?,
+            };
+            let found = checked(&steps, rules, watched, progress)?;
+            Ok::<_, Error>((steps, misses, found))
+        };
+        let (mut steps, mut misses, mut found) = tried(true)?;
+        if steps.len() == 1 && found.least <= 0.0 {
+            // A fold that the search did not see.
+            (steps, misses, found) = tried(false)?;
+        }
         report(progress, 1.0)?;
         Composed::of(steps, rules.transform, rules.temperature, misses, found)
     }
@@ -114,11 +126,12 @@ impl Stand {
     }
 }
 
-/// The steps, and how far the last one leaves each control point from where it was to go.
+/// The steps, one if it may be one and that folds nothing, and how far the last one leaves each control point from where it was to go.
 fn steps<const D: usize>(
     mut stand: Stand,
     pose: Pose<'_>,
     rules: Rules<'_>,
+    one: bool,
     refit: &Refit<'_>,
     progress: &mut Progress<'_>,
 ) -> Result<(Vec<Step>, Vec<f64>), Error> {
@@ -128,7 +141,7 @@ fn steps<const D: usize>(
     let on_the_way = Pose { q: &goal, ..pose };
     let motion = stand.handles.anchor(on_the_way.q, pose.orientations)?.rotation;
     let path = Path::<D>::new(&p, on_the_way, rules.turns, &motion);
-    if path.largest_turn() <= PI {
+    if one && path.largest_turn() <= PI {
         let one = stand.tried(rules, pose, rules.adherence)?;
         if one.least > 0.0 {
             return Ok((vec![stand.step(pose, &one.aim)], one.aim.misses));
