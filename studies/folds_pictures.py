@@ -39,8 +39,8 @@ def main(folder: Path) -> None:
     panels = [Panel("at rest", x, faces)]
     for no_folds in (False, True):
         map = nm.Session(twisted, no_folds=no_folds).fit(x, faces=faces)
-        title = f"in {map.report().steps} steps" if no_folds else "one step: no turn at all"
-        panels.append(Panel(f"the top turned by {TURNS}, {title}", map.at(x), faces))
+        title = f"in {map.report().steps} steps" if no_folds else "in one step"
+        panels.append(Panel(f"turned by {TURNS}, {title}", map.at(x), faces))
     render(panels, folder / "no-folds-twist.png", control_points=ends, width=1200)
 
 
