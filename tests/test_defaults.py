@@ -37,5 +37,7 @@ def test_the_help_of_the_command_line_says_the_defaults_of_the_core():
     expected = {name: f"{value:g}" if isinstance(value, float) else str(value) for name, value in SETTINGS.items()}
     expected["steps"] = "until the loss is small"
     assert SETTINGS.get("steps") is None
+    expected["no_folds"] = "one step"
+    assert SETTINGS["no_folds"] is False
     assert told == {name: expected[name] for name in told}
     assert len(told) == len(settings.WEIGHTS) + len(settings.MOTION)

@@ -1,6 +1,6 @@
 """One session, one result: `neuralmls deform`, `Map` and `nm.deform` give the same (the editor: editor/tests/e2e).
 
-tests/faces.json has control points of the sample chair, and 22 sessions: settings, frame, what differs in the points.
+tests/faces.json has control points of the sample chair, and 23 sessions: settings, frame, what differs in the points.
 """
 
 from __future__ import annotations
@@ -73,6 +73,7 @@ def test_every_face_gives_the_same(session, chair, tmp_path, monkeypatch):
         temperature=read.settings["temperature"],
         handles=read.settings["handles"],
         relax=read.settings["relax"],
+        no_folds=read.settings["no_folds"],
     )
     # Matrices go by way of axis and angle, which rounds.
     assert np.abs(called - y).max() <= (1e-13 if read.points.is_oriented else 0)
@@ -80,7 +81,7 @@ def test_every_face_gives_the_same(session, chair, tmp_path, monkeypatch):
 
 def test_the_sessions_are_of_every_kind():
     said = [session["settings"] for session in SESSIONS]
-    assert len(SESSIONS) == 22
+    assert len(SESSIONS) == 23
     assert {settings.get("weights", {}).get("kind") for settings in said} == {
         None,
         "neural",
@@ -90,6 +91,7 @@ def test_the_sessions_are_of_every_kind():
     assert {settings.get("transform", "rigid") for settings in said} == {"rigid", "similarity", "affine"}
     assert {settings.get("handles", "auto") for settings in said} == {"auto", "exact", "soft", 0.5}
     assert {settings.get("relax", 0) for settings in said} == {0, 0.4, 1}
+    assert {settings.get("no_folds", False) for settings in said} == {False, True}
     temperatures = [settings.get("temperature", 1) for settings in said]
     assert (min(temperatures), max(temperatures)) == (0.1, 10)
     assert any("frame" in session for session in SESSIONS)

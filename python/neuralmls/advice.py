@@ -85,12 +85,17 @@ def fitted(
     temperature: float,
     handles: Handles,
     relax: float = 0.0,
+    no_folds: bool = False,
     rotations: Rotations = None,
     scales: Scales = None,
     names: Sequence[str] | None = None,
     shape: tuple[NDArray[np.float64], NDArray[np.uint32]] | None = None,
+    seed: int | None = None,
 ) -> Map:
-    """Return the map of weights that were fitted already, as `advise` has its parameters; `shape`: for `relax`."""
+    """Return the map of weights that were fitted already, as `advise` has its parameters.
+
+    `shape`: for `relax` and `no_folds`; `seed`: of the networks of further steps.
+    """
     p = weights.control_points
     q = as_points("targets", targets, p.shape[1])
     if len(q) != len(p):
@@ -106,7 +111,10 @@ def fitted(
         temperature=temperature,
         handles=handles,
         relax=relax,
+        no_folds=no_folds,
     )
+    if seed is not None:
+        session = session.replace(seed=seed)
     return Map._of(_core.Map.of(session._core, weights._core, shape))
 
 

@@ -39,6 +39,24 @@ def as_points(name: str, values: ArrayLike, dimension: int | None = None) -> NDA
     return points
 
 
+def as_rows(points: ArrayLike) -> tuple[ArrayLike, tuple[int, ...] | None]:
+    """Return a grid of points (h, w, d), or of more axes, as rows (n, d), with its axes; what is none as it is."""
+    try:
+        if np.ndim(points) <= 2:
+            return points, None
+    except ValueError:  # of rows of several lengths, which as_points refuses
+        return points, None
+    grid = np.asarray(points)
+    return grid.reshape(-1, grid.shape[-1]), grid.shape[:-1]
+
+
+def dtype_of(points: ArrayLike) -> np.dtype[np.floating]:
+    """Return what is to be returned for points: float32 if they are, else float64."""
+    given = getattr(points, "dtype", np.dtype(np.float64))
+    single = given.kind == "f" and given.itemsize == 4  # whatever its byte order
+    return np.dtype(np.float32 if single else np.float64)
+
+
 def as_triangles(faces: ArrayLike, count: int) -> NDArray[np.int64]:
     """Return triangles (f, 3) that name vertices below `count`.
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from neuralmls import _core
-from neuralmls.arrays import Progress, as_number, as_points
+from neuralmls.arrays import Progress, as_number, as_points, dtype_of
 from neuralmls.errors import ArgumentError
 from neuralmls.handles import ExactHandles
 from neuralmls.orientations import Rotations, Scales, as_orientations
@@ -64,7 +64,7 @@ class Deformer:
         transform: Transform = "rigid",
         progress: Progress | None = None,
     ) -> None:
-        self._dtype = _dtype_of(x)
+        self._dtype = dtype_of(x)
         if not hasattr(weights, "control_points"):
             raise ArgumentError(
                 f"weights: expected a weight function, with control_points and logits, found {weights!r}"
@@ -91,7 +91,7 @@ class Deformer:
     ) -> Self:
         """Points bound by a map, and to its elastic shape if it has one."""
         self = cls.__new__(cls)
-        self._p, self._weights, self._transform, self._dtype = weights.control_points, weights, transform, _dtype_of(x)
+        self._p, self._weights, self._transform, self._dtype = weights.control_points, weights, transform, dtype_of(x)
         points = as_points("x", x, self._p.shape[1])
         self._count = len(points)
         self._core = map.bind(points, x._core if isinstance(x, PointTree) else None, progress)
@@ -221,12 +221,6 @@ class Deformer:
         positions, maps = self._core.deform(q, orientations, t, return_maps, out, progress)
         y: Floats = positions if out is not None else positions.astype(self._dtype, copy=False)
         return (y, maps) if maps is not None else y
-
-
-def _dtype_of(x: ArrayLike) -> np.dtype[np.floating]:
-    given = getattr(x, "dtype", np.dtype(np.float64))
-    single = given.kind == "f" and given.itemsize == 4  # whatever its byte order
-    return np.dtype(np.float32 if single else np.float64)
 
 
 def _restored(

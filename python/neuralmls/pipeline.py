@@ -31,6 +31,7 @@ def deform(
     temperature: float = 1.0,
     handles: Handles = "auto",
     relax: float = 0.0,
+    no_folds: bool = False,
     seed: int = 0,
 ) -> Floats:
     """Deform the points `x` so that the control points `p` move to `q`: what `neuralmls deform` does, in one call.
@@ -48,7 +49,7 @@ def deform(
         `Deformer.deform`).
     weights : "neural", "shape-aware", "inverse-distance", or a weight function of the control points `p`
     faces : (f, 3) integers, optional
-        Triangles of the points, for shape-aware weights and `relax`; without them the points are a cloud.
+        Triangles of the points, for shape-aware weights, `relax` and `no_folds`; without them the points are a cloud.
     transform : "rigid", "similarity" or "affine"
     temperature : float > 0
     handles : "auto", "exact", "soft", or a number from 0 to 1
@@ -56,6 +57,8 @@ def deform(
         they stop near them.
     relax : float, 0 to 1
         How far the elastic finish goes (see `Session`); above 0 for weights of this package only.
+    no_folds : bool
+        Whether nothing of the shape is to fold over (see `Session`); for neural and inverse-distance weights.
     seed : int
         Of the network's training (neural and shape-aware weights).
 
@@ -104,9 +107,11 @@ def deform(
             temperature=temperature,
             handles=handles,
             relax=relax,
+            no_folds=no_folds,
             rotations=rotations,
             scales=scales,
             shape=(points, as_indices(faces, len(points))),
+            seed=seed if isinstance(function, NeuralWeights) else None,
         )
         return map.at(x)
     # Logits of someone's own: the same steps, of which a map would keep the weights.
@@ -114,6 +119,8 @@ def deform(
     session = Session(posed, transform=transform, temperature=temperature, handles=handles, relax=relax)
     if relax:
         raise ArgumentError("relax: expected weights of this package, found logits of another")
+    if no_folds:
+        raise ArgumentError("no_folds: expected weights of this package, found logits of another")
     aimed = session._core.aim(ExactHandles(function, transform=transform)._core)
     deformer = Deformer(x, function, transform=transform)
     return deformer.deform(aimed, temperature, rotations=posed.rotations, scales=posed.scales)

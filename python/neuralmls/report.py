@@ -28,6 +28,13 @@ class Report:
     not_arrived : str or None
         The one of the warnings that control points do not arrive, which advice of kind "misses" says too.
     warnings : tuple of str
+    steps : int
+        How many steps the map takes: 1 without `no_folds`.
+    least : float or None
+        With `no_folds`: the least `det J` of the map on the shape and around it, at places other than those of the
+        search for steps; 0 or less where space is turned inside out.
+    folded : float or None
+        With `no_folds`: which part of the shape folds over all the same.
     """
 
     names: tuple[str, ...]
@@ -38,6 +45,9 @@ class Report:
     soft: str | None
     not_arrived: str | None
     warnings: tuple[str, ...]
+    steps: int
+    least: float | None
+    folded: float | None
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from neuralmls import _core, session_files
 from neuralmls import _core as core  # where a class has an attribute of that name
-from neuralmls.arrays import Progress, as_box, as_points, box_around
+from neuralmls.arrays import Progress, as_box, as_points, as_rows, box_around
 from neuralmls.control_points import ControlPoints
 from neuralmls.deformer import Deformer, Floats
 from neuralmls.errors import ArgumentError, ControlPointError, FileError, NeuralMLSError
@@ -22,6 +22,7 @@ from neuralmls.report import Advice, Look, Report
 from neuralmls.settings import Handles, Transform, WeightsName, changes_of
 from neuralmls.shape import Shape
 from neuralmls.shapes_together import box_of, together
+from neuralmls.space import Space
 from neuralmls.tables import fact_table
 from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
 from neuralmls.weights.softmax import softmax
@@ -51,6 +52,9 @@ class Session:
     relax : float, 0 to 1
         How far the elastic finish goes: 0 is moving least squares alone; 1 lets the shape's own stiffness decide what
         the control points leave open. Above 0 the session is to be fitted to a shape.
+    no_folds : bool
+        Whether the map is to fold nothing over on the shapes of the fit: where one step does, it becomes as many small
+        ones as it takes. Neural and inverse-distance weights, without `relax`. The session is to be fitted to a shape.
     frame : (2, d), optional
         The box in which weights are trained; without it, that of the shapes of `fit`. With it, one session is one map
         of space, whatever it is applied to.
@@ -79,12 +83,19 @@ class Session:
         temperature: float = 1.0,
         handles: Handles = "auto",
         relax: float = 0.0,
+        no_folds: bool = False,
         frame: ArrayLike | None = None,
         **parameters: float | None,
     ) -> None:
         if not isinstance(points, ControlPoints):
             raise ArgumentError(f"points: expected ControlPoints, found {points!r}")
-        said = {"transform": transform, "temperature": temperature, "handles": handles, "relax": relax}
+        said = {
+            "transform": transform,
+            "temperature": temperature,
+            "handles": handles,
+            "relax": relax,
+            "no_folds": no_folds,
+        }
         for name, value in {"weights": weights, **said}.items():
             if value is None:
                 raise ArgumentError(f"{name}: expected a setting, found None")
@@ -157,7 +168,7 @@ class Session:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """Weights with their parameters, transform, temperature, handles, relax, as the session file has them."""
+        """Weights with parameters, transform, temperature, handles, relax, no_folds, as the session file has them."""
         found: dict[str, Any] = json.loads(self._core.settings)
         return found
 
@@ -186,6 +197,7 @@ class Session:
         temperature: float | None = None,
         handles: Handles | None = None,
         relax: float | None = None,
+        no_folds: bool | None = None,
         frame: ArrayLike | None = None,
         **parameters: float | None,
     ) -> Session:
@@ -197,7 +209,13 @@ class Session:
             A setting is out of its range, or belongs to other weights.
         """
         core = self._core if points is None else self._core.with_points(points._core)
-        said = {"transform": transform, "temperature": temperature, "handles": handles, "relax": relax}
+        said = {
+            "transform": transform,
+            "temperature": temperature,
+            "handles": handles,
+            "relax": relax,
+            "no_folds": no_folds,
+        }
         changes = changes_of(weights, parameters, **{key: value for key, value in said.items() if value is not None})
         if changes != "{}":
             core = core.with_settings(changes)
@@ -212,7 +230,8 @@ class Session:
         ----------
         shapes : Shape, or points (n, d)
             What it is for: the weights are trained in the box around all of them, unless the session has its own frame;
-            shape-aware weights learn from all of them, and `relax` takes their stiffness. Without any, in the box of
+            shape-aware weights learn from all of them, `relax` takes their stiffness, and
+            `no_folds` looks for folds there. Without any, in the box of
             the control points.
         faces : (f, 3) integers, optional
             Triangles of the points, where one array of points is all there is.
@@ -223,13 +242,13 @@ class Session:
         ------
         ArgumentError
             A face names no point, or belongs to no one array of points; the shapes have another dimension, or no size;
-            shape-aware weights or `relax` without a shape, `relax` in 1D.
+            shape-aware weights, `relax` or `no_folds` without a shape, `relax` in 1D.
         """
         dimension = self.points.dimension
         boxes, bounds = [box_of(shape, dimension) for shape in shapes], self.frame
         if boxes and bounds is None:
             bounds = as_box(box_around(np.concatenate(boxes)), dimension)
-        learns = self.weights == "shape-aware" or self.settings["relax"] > 0
+        learns = self.weights == "shape-aware" or self.settings["relax"] > 0 or self.settings["no_folds"]
         shape = together(shapes, dimension) if shapes and learns else None
         if faces is not None:
             if len(shapes) != 1 or isinstance(shapes[0], Shape):
@@ -245,7 +264,7 @@ class Session:
         return _restored_session, (self._core.to_json(), self._notes)
 
 
-class Map:
+class Map(Space):
     """A fitted session: where each point of space goes. Made by `Session.fit` or `Map.load`.
 
     The same map gives the same result for every file, block, process and machine, to rounding: bodies and their
@@ -297,11 +316,13 @@ class Map:
     def with_session(self, session: Session) -> Map:
         """Return the map of another session with the same weights, as one with other targets, temperature or relax.
 
+        With `no_folds` its steps are searched for anew.
+
         Raises
         ------
         ArgumentError
-            The control points at rest or the settings of the weights are others, or `relax` is above 0 and was not at
-            the fit: this needs a fit.
+            The control points at rest or the settings of the weights are others, or `relax` or `no_folds` is set and
+            was not at the fit: this needs a fit.
         """
         return Map._of(self._core.with_session(session._core))
 
@@ -316,14 +337,22 @@ class Map:
         return Map._of(self._core.with_session(self._core.session.with_points(points._core)))
 
     def at(self, points: ArrayLike, *, progress: Progress | None = None) -> Floats:
-        """Return where points (n, d) go, float32 if they are, else float64.
+        """Return where points (n, d), or a grid of them (h, w, 2), (d, h, w, 3), go: float32 if they are, else float64.
 
         Raises
         ------
         ArgumentError
             They are no finite points of the map's dimension.
+
+        Examples
+        --------
+        >>> map = Session(ControlPoints([[0.0, 0]], targets=[[1.0, 0]]), weights="inverse-distance").fit()
+        >>> map.at(np.zeros((4, 5, 2))).shape
+        (4, 5, 2)
         """
-        return self.deform(points, progress=progress)
+        rows, grid = as_rows(points)
+        y = self.deform(rows, progress=progress)
+        return y if grid is None else y.reshape(*grid, -1)
 
     @overload
     def deform(
@@ -409,6 +438,9 @@ class Map:
             core.soft,
             core.not_arrived,
             tuple(core.warnings),
+            core.steps,
+            core.least,
+            core.folded,
         )
 
     def advise(self, shape: Shape | ArrayLike, faces: ArrayLike | None = None) -> list[Advice]:
@@ -422,7 +454,7 @@ class Map:
         - ungoverned: a part that moves, and is far from all control points.
 
         What would help was tried: another temperature, soft handles and, where neither does, shape-aware weights
-        are named only where they at least halve it; exact handles only where they arrive.
+        are named only where they at least halve it, as is `no_folds` for folds; exact handles only where they arrive.
 
         Parameters
         ----------

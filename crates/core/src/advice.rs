@@ -132,6 +132,10 @@ impl Probe {
         part: impl Fn(&Look) -> f64,
         now: f64,
     ) -> Result<Option<(Better, f64)>, Error> {
+        if self.is_composed() {
+            // Another setting would want steps of its own.
+            return Ok(None);
+        }
         let mut best: Option<(Better, f64)> = None;
         let mut offer = |better: Better, look: &Look| {
             if part(look) < best.map_or(f64::INFINITY, |(_, part)| part) {

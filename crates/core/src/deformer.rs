@@ -257,14 +257,7 @@ impl Deformer {
 
     /// Checks that a pose fits; gives whether it leaves everything where it is.
     pub(crate) fn unmoved(&self, pose: Pose<'_>) -> Result<bool, Error> {
-        let Pose { q, orientations } = pose;
-        check_points("q", q, self.dim)?;
-        if q.len() != self.p.len() {
-            let (found, expected) = (q.len() / self.dim, self.p.len() / self.dim);
-            return Err(Error::argument("q", format!("expected {expected} targets, found {found}")));
-        }
-        let check = |given| check_orientations(given, q.len() / self.dim, self.dim);
-        Ok(orientations.map_or(Ok(true), check)? && q == self.p)
+        unmoved(&self.p, self.dim, pose)
     }
 
     /// The map of its kind that fits all control points with equal weights: its rotation (row-major), scale and linear map (row-major).
@@ -364,6 +357,21 @@ impl Deformer {
         }
         Ok(weights)
     }
+}
+
+/// Checks that a pose fits the control points `p` (m x dim); gives whether it leaves everything where it is.
+///
+/// # Errors
+/// Where it does not fit, is not finite, or an orientation is none.
+pub(crate) fn unmoved(p: &[f64], dim: usize, pose: Pose<'_>) -> Result<bool, Error> {
+    let Pose { q, orientations } = pose;
+    check_points("q", q, dim)?;
+    if q.len() != p.len() {
+        let (found, expected) = (q.len() / dim, p.len() / dim);
+        return Err(Error::argument("q", format!("expected {expected} targets, found {found}")));
+    }
+    let check = |given| check_orientations(given, q.len() / dim, dim);
+    Ok(orientations.map_or(Ok(true), check)? && q == p)
 }
 
 /// One frame: what is the same for all of its points.

@@ -8,7 +8,9 @@
 //! | [`softmax`] | logits at a temperature -> weights, and the form of them that stays accurate however small T is |
 //! | `mls` | weights and moved control points -> a rigid, similarity or affine map a point |
 //! | `deformer` | joins them: points bound to weights once, deformed many times |
+//! | `inverse` | the whole map's Jacobian, and from where a point came |
 //! | `aim` | the targets with which control points arrive |
+//! | `compose` | many small maps, one after the other, that fold nothing |
 //! | `relax` | what control points leave open, decided by the shape's own stiffness |
 //! | `probe`, `advice` | a deformation looked at in places all over a shape; what is likely bad about it, and which setting would help |
 //! | `geometry` | coordinates relative to a box, a kd-tree over points, [`placement`] of control points |
@@ -22,9 +24,11 @@
 mod advice;
 mod aim;
 mod check;
+mod compose;
 mod deformer;
 mod error;
 mod geometry;
+mod inverse;
 mod machine;
 mod mls;
 mod probe;
@@ -34,9 +38,11 @@ mod weights;
 
 pub use advice::{Advice, Better, Kind};
 pub use aim::{Aim, Anchor, Handles, Remedy, Soft, Stiff};
+pub use compose::{Composed, Found, Refit, Rules, Step, Watched, MOST_STEPS};
 pub use deformer::{Deformed, Deformer, Pose};
 pub use error::Error;
 pub use geometry::{placement, Frame, Order, PointTree};
+pub use inverse::{Inverse, Motion};
 pub use machine::{memory, progress};
 pub use mls::{best_rotation, piece, Piece, Transform, ANCHOR_WEIGHT, RIDGE};
 pub use probe::{places, Look, Probe, PLACES};

@@ -4,6 +4,7 @@
 
 use crate::aim::{greatest, Handles};
 use crate::check::check_points;
+use crate::compose::Composed;
 use crate::deformer::{Deformer, Pose};
 use crate::error::Error;
 use crate::geometry::placement::sample_surface;
@@ -33,6 +34,7 @@ pub struct Probe {
     transform: Transform,
     /// An elastic shape, and how far places go with it.
     elastic: Option<(Arc<Elastic>, f64)>,
+    composed: Option<Arc<Composed>>,
 }
 
 /// What a deformation does at the places.
@@ -62,7 +64,7 @@ pub fn places(x: &[f64], dim: usize, faces: &[[u32; 3]], count: usize) -> Result
 }
 
 /// The places (k x dim) and those beside them, where the weights have to be known; `side` is the shape's longest.
-fn with_those_beside(places: &[f64], dim: usize, side: f64) -> Vec<f64> {
+pub(crate) fn with_those_beside(places: &[f64], dim: usize, side: f64) -> Vec<f64> {
     let mut points = places.to_vec();
     for axis in 0..dim {
         for way in [1.0, -1.0] {
@@ -72,6 +74,28 @@ fn with_those_beside(places: &[f64], dim: usize, side: f64) -> Vec<f64> {
         }
     }
     points
+}
+
+/// `J` at places, from where those beside them (2 dim times as many) go.
+fn jacobians(beside: &[f64], dim: usize, side: f64) -> Vec<[[f64; 3]; 3]> {
+    let size = beside.len() / (2 * dim);
+    let sides: Vec<&[f64]> = beside.chunks_exact(size).collect();
+    let jacobian = |place: usize| -> [[f64; 3]; 3] {
+        let mut j = [[0.0; 3]; 3];
+        for axis in 0..dim {
+            let (up, down) = (&sides[2 * axis][dim * place..], &sides[2 * axis + 1][dim * place..]);
+            for row in 0..dim {
+                j[row][axis] = (up[row] - down[row]) / (2.0 * STEP * side);
+            }
+        }
+        j
+    };
+    (0..size / dim).map(jacobian).collect()
+}
+
+/// `det J` there.
+pub(crate) fn determinants(beside: &[f64], dim: usize, side: f64) -> Vec<f64> {
+    jacobians(beside, dim, side).iter().map(|j| determinant(j, dim)).collect()
 }
 
 impl Probe {
@@ -103,6 +127,7 @@ impl Probe {
             careful,
             transform,
             elastic: None,
+            composed: None,
         })
     }
 
@@ -119,6 +144,16 @@ impl Probe {
         if let Some((_, relax)) = &mut self.elastic {
             *relax = amount;
         }
+    }
+
+    /// Lets places go the way of these steps, the first of them of the same weights, whatever the pose; or of one step.
+    pub fn set_composed(&mut self, composed: Option<Arc<Composed>>) {
+        self.composed = composed;
+    }
+
+    /// Whether they go in steps.
+    pub(crate) fn is_composed(&self) -> bool {
+        self.composed.is_some()
     }
 
     /// The places, k x dim.
@@ -153,31 +188,9 @@ impl Probe {
         temperature: f64,
         adherence: &[f64],
     ) -> Result<Look, Error> {
-        let pose = pose.into();
-        let aim = match self.careful {
-            true => self.handles.aim_carefully(pose, temperature, adherence)?,
-            false => self.handles.aim(pose, temperature, adherence)?,
-        };
-        let aimed = Pose { q: &aim.targets, ..pose };
-        let mut y = self.all.deform(aimed, temperature, false, &mut |_| true)?.positions;
-        if let Some((elastic, amount)) = self.elastic.as_ref().filter(|(_, amount)| *amount > 0.0) {
-            if let Some(relaxed) = elastic.relax(aimed, temperature, self.transform)? {
-                self.all.relax(&relaxed, *amount, &mut y, None)?;
-            }
-        }
+        let mut y = self.moved(pose.into(), temperature, adherence)?;
         let (dim, beside) = (self.dim, y.split_off(self.places.len()));
-        let sides: Vec<&[f64]> = beside.chunks_exact(self.places.len()).collect();
-        let jacobian = |place: usize| -> [[f64; 3]; 3] {
-            let mut j = [[0.0; 3]; 3];
-            for axis in 0..dim {
-                let (up, down) = (&sides[2 * axis][dim * place..], &sides[2 * axis + 1][dim * place..]);
-                for row in 0..dim {
-                    j[row][axis] = (up[row] - down[row]) / (2.0 * STEP * self.side);
-                }
-            }
-            j
-        };
-        let jacobians: Vec<_> = (0..y.len() / dim).map(jacobian).collect();
+        let jacobians = jacobians(&beside, dim, self.side);
         let mut stretches: Vec<f64> = jacobians.iter().map(stretch).collect();
         let usual = median(&stretches).max(1.0);
         stretches.iter_mut().for_each(|stretch| *stretch /= usual);
@@ -191,6 +204,25 @@ impl Probe {
             stretches,
             alike: (0..dim * dim).all(|at| differ(at / dim, at % dim) < ALIKE),
         })
+    }
+
+    /// Where the places and those beside them go.
+    fn moved(&self, pose: Pose<'_>, temperature: f64, adherence: &[f64]) -> Result<Vec<f64>, Error> {
+        if let Some(composed) = &self.composed {
+            return Ok(composed.deform(&self.all, false, &mut |_| true)?.positions);
+        }
+        let aim = match self.careful {
+            true => self.handles.aim_carefully(pose, temperature, adherence)?,
+            false => self.handles.aim(pose, temperature, adherence)?,
+        };
+        let aimed = Pose { q: &aim.targets, ..pose };
+        let mut y = self.all.deform(aimed, temperature, false, &mut |_| true)?.positions;
+        if let Some((elastic, amount)) = self.elastic.as_ref().filter(|(_, amount)| *amount > 0.0) {
+            if let Some(relaxed) = elastic.relax(aimed, temperature, self.transform)? {
+                self.all.relax(&relaxed, *amount, &mut y, None)?;
+            }
+        }
+        Ok(y)
     }
 
     /// How far each place is from the nearest control point, in the median distance of a control point to the next one, and which it is;

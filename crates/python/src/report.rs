@@ -32,6 +32,24 @@ impl Report {
         self.0.warnings.clone()
     }
 
+    /// How many steps the map takes.
+    #[getter]
+    fn steps(&self) -> usize {
+        self.0.steps
+    }
+
+    /// With `no_folds`: the least `det J` that was found.
+    #[getter]
+    fn least(&self) -> Option<f64> {
+        self.0.least
+    }
+
+    /// With `no_folds`: which part of the shape folds over all the same.
+    #[getter]
+    fn folded(&self) -> Option<f64> {
+        self.0.folded
+    }
+
     #[getter]
     fn names(&self) -> Vec<&str> {
         self.0.control_points.iter().map(|point| &*point.name).collect()

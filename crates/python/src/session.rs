@@ -3,7 +3,7 @@
 use neuralmls_core::memory::copy_of;
 use neuralmls_core::progress::Progress;
 use neuralmls_session::{Advice, Error, Held};
-use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -161,6 +161,9 @@ pub(crate) struct Map(pub neuralmls_session::Map);
 
 /// Positions n x d, and the maps n x d x d where they were asked for.
 type Deformed<'py> = (Bound<'py, PyArray2<f64>>, Option<Bound<'py, PyArray3<f64>>>);
+/// From where points came, the maps back, and the numbers of those that were not found.
+type Undone<'py> =
+    (Bound<'py, PyArray2<f64>>, Option<Bound<'py, PyArray3<f64>>>, Bound<'py, PyArray1<usize>>);
 /// A kind, a sentence, a place, control points by their numbers, how bad.
 type Told = (&'static str, String, Vec<f64>, Vec<usize>, f64);
 
@@ -230,6 +233,37 @@ impl Map {
         Ok(Deformer { inner: run_session(py, progress, bound)?, dim })
     }
 
+    /// The Jacobians at points, n x d x d.
+    fn jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        x: PyReadonlyArray2<'_, f64>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let (n, dim, x) = (x.shape()[0], x.shape()[1], x.as_slice()?);
+        let found = run_session(py, progress, |report| self.0.jacobian(x, report))?;
+        PyArray1::from_vec(py, found).reshape([n, dim, dim])
+    }
+
+    /// From where points came, n x d, the maps back, n x d x d, where they were asked for, and the numbers of those that were not found, which are
+    /// refused unless `partial`.
+    fn inverse<'py>(
+        &self,
+        py: Python<'py>,
+        y: PyReadonlyArray2<'_, f64>,
+        partial: bool,
+        maps: bool,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Undone<'py>> {
+        let (n, dim, y) = (y.shape()[0], y.shape()[1], y.as_slice()?);
+        let found = run_session(py, progress, |report| match partial {
+            true => self.0.inverse_where_found(y, maps, report),
+            false => self.0.inverse(y, maps, report),
+        })?;
+        let maps = found.maps.map(|maps| PyArray1::from_vec(py, maps).reshape([n, dim, dim])).transpose()?;
+        Ok((table(py, found.points, dim)?, maps, PyArray1::from_vec(py, found.missed)))
+    }
+
     /// What happens to the control points, in the file of a shape where one is given.
     fn report(&self, py: Python<'_>, shape: Option<&ShapeFile>) -> PyResult<Report> {
         let held = shape.map(|shape| (&shape.0, shape.0.step().unwrap_or(0.0)));
@@ -262,7 +296,7 @@ impl Map {
                 found.map_err(|error| failed = Some(error)).ok().flatten().map(|map| map.get().0.clone())
             })
         };
-        let found = py.detach(|| self.0.advise(&self.0.probe(x, faces)?, &mut made)).map_err(raised)?;
+        let found = py.detach(|| self.0.advise(&self.0.probe(x, faces)?, &mut made, true)).map_err(raised)?;
         let told = |advice: Advice| {
             (advice.kind, advice.sentence, advice.place, advice.control_points, advice.amount)
         };

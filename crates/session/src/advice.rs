@@ -64,6 +64,7 @@ impl Map {
         probe.set_transform(self.transform());
         probe.set_careful(self.session().settings.handles != HandlesSetting::Exact);
         probe.set_relax(self.session().settings.relax);
+        probe.set_composed(self.steps().cloned());
     }
 
     /// What this map does at the places that are probed.
@@ -78,11 +79,11 @@ impl Map {
     /// What is likely bad about the shape that was probed, and what would help; nothing where everything moves as one.
     ///
     /// What would help was tried: another temperature, soft handles and, where neither does, `other` weights are named only where they at
-    /// least halve it; exact handles only where they arrive.
+    /// least halve it; exact handles only where they arrive. Where `unfolds`, `no_folds` is tried for folds, which takes as long as a fit with it.
     ///
     /// # Errors
     /// As [`Map::aim`].
-    pub fn advise(&self, probe: &Probe, other: Other<'_>) -> Result<Vec<Advice>, Error> {
+    pub fn advise(&self, probe: &Probe, other: Other<'_>, unfolds: bool) -> Result<Vec<Advice>, Error> {
         let (points, settings) = (&self.session().points, &self.session().settings);
         let posed = self.session().posed();
         let pose = posed.pose();
@@ -99,11 +100,13 @@ impl Map {
                             "move the control points there less far towards or past each other".into(),
                         ),
                     };
+                    let in_steps = if unfolds { self.in_steps(probe, part) } else { None };
                     let sentence = format!(
-                        "{} of the shape is folded over, most of all near {}, at {}; {help}",
+                        "{} of the shape is folded over, most of all near {}, at {}; {help}{}",
                         percent(part),
                         quoted(&points[first].name),
-                        place(&at)
+                        place(&at),
+                        in_steps.unwrap_or_default()
                     );
                     ("folds", part, sentence, vec![first])
                 }
@@ -143,7 +146,7 @@ impl Map {
     fn misses(&self) -> Result<Option<Advice>, Error> {
         let points = &self.session().points;
         let (dim, aim, posed) = (points.dim(), self.aim()?, self.session().posed());
-        let landed = self.handles().land(posed.aimed(&aim), self.session().settings.temperature)?;
+        let landed = self.landed(&aim)?.positions;
         let each = |a: &[f64], b: &[f64]| -> Vec<f64> {
             a.chunks_exact(dim).zip(b.chunks_exact(dim)).map(|(a, b)| distance(a, b)).collect()
         };
@@ -215,6 +218,9 @@ impl Map {
         other: Other<'_>,
         part: impl Fn((f64, f64)) -> f64,
     ) -> Result<Option<String>, Error> {
+        if self.steps().is_some() {
+            return Ok(None);
+        }
         let Some(other) = other() else {
             return Ok(None);
         };

@@ -152,6 +152,7 @@ mod tests {
             "alpha belongs to inverse-distance weights, but the weights are neural"
         );
         assert_eq!(says(r#"{"temperature": -1}"#), "temperature: expected a number above 0, found -1");
+        assert_eq!(says(r#"{"no_folds": 1}"#), "no_folds: expected true or false, found 1");
         let expected = "relax: expected a number of at least 0 and at most 1, found";
         assert_eq!(says(r#"{"relax": 1.5}"#), format!("{expected} 1.5"));
         assert_eq!(says(r#"{"relax": "much"}"#), format!("{expected} 'much'"));

@@ -135,6 +135,18 @@ impl ControlPoints {
         })
     }
 
+    /// The orientations of those that turn by them as rotation vectors, m x 3, NaN for others; `None` where none does.
+    pub fn turns(&self) -> Option<Vec<f64>> {
+        let of = |(point, stays): (&ControlPoint, bool)| match point.orientation.filter(|_| !stays) {
+            Some(orientation) => orientation.vector(),
+            None => [f64::NAN; 3],
+        };
+        self.list
+            .iter()
+            .any(|point| point.orientation.is_some())
+            .then(|| self.list.iter().zip(self.stay()).flat_map(of).collect())
+    }
+
     /// How closely each is to be met.
     pub fn weights(&self) -> Vec<f64> {
         self.list.iter().map(|point| point.weight).collect()

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use neuralmls_core::{
-    progress::Progress, Aim, Deformed, Deformer, Elastic, Frame, Handles, PointTree, Pose, Relaxed, Shape,
-    Trained, Transform, Weights,
+    progress::Progress, Aim, Composed, Deformed, Deformer, Elastic, Frame, Handles, PointTree, Pose, Relaxed,
+    Shape, Soft, Trained, Transform, Watched, Weights,
 };
 
+use crate::report::ARRIVED;
 use crate::{Bounds, Error, HandlesSetting, Session};
 
 /// Control points, the weights that were fitted to them, and what is set: where each point of space goes.
@@ -29,15 +30,23 @@ pub struct Map {
     handles: Arc<Handles>,
     /// Of a map that was fitted with `relax`.
     elastic: Option<Arc<Elastic>>,
+    /// Of a map that was fitted with `no_folds`: where folds are looked for.
+    watched: Option<Arc<Watched>>,
+    /// With `no_folds`: the steps.
+    composed: Option<Arc<Composed>>,
 }
+
+/// The part of a fit with `no_folds` that is its first training, for its progress.
+const FIRST_FIT: f64 = 0.2;
 
 impl Session {
     /// Fits the weights to the control points: in the session's own frame, else in `bounds`, the box around the shapes, else in the box of
-    /// the control points. `shape` is what shape-aware weights learn from, and what `relax` takes stiffness from: all points and faces of the
-    /// shapes.
+    /// the control points. `shape` is what shape-aware weights learn from, what `relax` takes stiffness from, and where `no_folds` looks for
+    /// folds: all points and faces of the shapes.
     ///
     /// # Errors
-    /// Where a setting is out of its range, a box has no size; for shape-aware weights or `relax` without a shape; for `relax` in 1D.
+    /// Where a setting is out of its range, a box has no size; for shape-aware weights, `relax` or `no_folds` without a shape; for `relax`
+    /// in 1D.
     pub fn fit(
         &self,
         bounds: Option<&Bounds>,
@@ -52,8 +61,10 @@ impl Session {
             Some(bounds) => bounds.frame(dim)?,
             None => Frame::around(&p, dim),
         };
-        let weights = self.settings.weights.fit(&p, dim, frame, shape, progress)?;
-        Map::over_shape(session, Arc::new(weights), shape)
+        let first = if self.settings.no_folds { FIRST_FIT } else { 1.0 };
+        let weights = self.settings.weights.fit(&p, dim, frame, shape, &mut |done| progress(first * done))?;
+        let further = &mut |done| progress(first + (1.0 - first) * done);
+        Map::of_shape(session, Arc::new(weights), shape, further)
     }
 }
 
@@ -96,38 +107,67 @@ impl Map {
     /// # Errors
     /// Where they are of another kind, or belong to other control points.
     pub fn over(session: Session, weights: Arc<Weights>) -> Result<Map, Error> {
-        Map::made(session, weights, None)
+        Map::over_shape(session, weights, None)
     }
 
-    /// The same, of a session that may have `relax` set, which takes its stiffness from the shape.
+    /// The same, of a session that may have `relax` or `no_folds` set, which need the shape.
     ///
     /// # Errors
-    /// As [`Map::over`]; for `relax` without a shape, or in 1D.
+    /// As [`Map::over`]; for `relax` or `no_folds` without a shape; for `relax` in 1D.
     pub fn over_shape(
         session: Session,
         weights: Arc<Weights>,
         shape: Option<Shape<'_>>,
     ) -> Result<Map, Error> {
-        if session.settings.relax == 0.0 {
-            return Map::over(session, weights);
-        }
-        let shape = shape.ok_or_else(|| {
-            Error::argument("shapes: relax needs at least one shape, whose stiffness decides")
-        })?;
-        let elastic = Elastic::new(&weights, shape)?;
-        Map::made(session, weights, Some(Arc::new(elastic)))
+        Map::of_shape(session, weights, shape, &mut |_| true)
     }
 
-    /// The same, of an elastic shape too.
-    pub(crate) fn elastic(
+    fn of_shape(
+        session: Session,
+        weights: Arc<Weights>,
+        shape: Option<Shape<'_>>,
+        progress: &mut Progress<'_>,
+    ) -> Result<Map, Error> {
+        let needed = |why: &str| shape.ok_or_else(|| Error::argument(format!("shapes: {why}")));
+        let elastic = match session.settings.relax > 0.0 {
+            true => {
+                let shape = needed("relax needs at least one shape, whose stiffness decides")?;
+                Some(Arc::new(Elastic::new(&weights, shape)?))
+            }
+            false => None,
+        };
+        let watched = match session.settings.no_folds {
+            true => {
+                let shape = needed("no_folds needs at least one shape, where folds are looked for")?;
+                Some(Arc::new(Watched::new(shape.x, weights.dim(), shape.faces)?))
+            }
+            false => None,
+        };
+        Map::made(session, weights, elastic, watched)?.unfolded(progress)
+    }
+
+    /// The same, of what a file holds.
+    pub(crate) fn of_file(
         session: Session,
         weights: Weights,
         elastic: Option<Elastic>,
+        watched: Option<Watched>,
+        composed: Option<Composed>,
     ) -> Result<Map, Error> {
-        Map::made(session, Arc::new(weights), elastic.map(Arc::new))
+        let map = Map::made(session, Arc::new(weights), elastic.map(Arc::new), watched.map(Arc::new))?;
+        if map.session.settings.no_folds != composed.is_some() {
+            return Err(Error::argument("no_folds: expected the steps of the map with it, and none without"));
+        }
+        Ok(Map { composed: composed.map(Arc::new), ..map })
     }
 
-    fn made(session: Session, weights: Arc<Weights>, elastic: Option<Arc<Elastic>>) -> Result<Map, Error> {
+    /// Without the steps, where there are any.
+    fn made(
+        session: Session,
+        weights: Arc<Weights>,
+        elastic: Option<Arc<Elastic>>,
+        watched: Option<Arc<Watched>>,
+    ) -> Result<Map, Error> {
         session.settings.check()?;
         let (expected, found) = (session.settings.weights.kind(), weights.kind());
         if found != expected {
@@ -143,28 +183,48 @@ impl Map {
                 "relax: the map was fitted without, and knows no shape; fit it with relax above 0",
             ));
         }
+        if session.settings.no_folds && watched.is_none() {
+            return Err(Error::argument(
+                "no_folds: the map was fitted without, and knows no shape; fit it with no_folds",
+            ));
+        }
         let handles = Arc::new(Handles::new(&weights, session.settings.transform)?);
-        Ok(Map { session, weights, handles, elastic })
+        Ok(Map { session, weights, handles, elastic, watched, composed: None })
     }
 
-    /// The same weights with other targets, transform, temperature, handles or `relax`.
+    /// With the steps that `no_folds` asks for.
+    fn unfolded(self, progress: &mut Progress<'_>) -> Result<Map, Error> {
+        let Some(watched) = self.watched.as_ref().filter(|_| self.session.settings.no_folds) else {
+            return Ok(self);
+        };
+        let composed = self.session.unfold(self.weights.clone(), watched, progress)?;
+        Ok(Map { composed: Some(Arc::new(composed)), ..self })
+    }
+
+    /// The same weights with other targets, transform, temperature, handles, `relax` or `no_folds`; with `no_folds` the steps are searched for
+    /// anew.
     ///
     /// # Errors
-    /// Where the control points at rest or the settings of the weights are others, or `relax` is above 0 and was not at the fit: these need a
-    /// fit.
+    /// Where the control points at rest or the settings of the weights are others, or `relax` or `no_folds` is set and was not at the fit: these
+    /// need a fit.
     pub fn with(&self, session: Session) -> Result<Map, Error> {
         if session.settings.weights != self.session.settings.weights {
             return Err(Error::argument("weights: the map was fitted with other weights"));
         }
         let session = Session { frame: self.session.frame.clone(), ..session };
-        if session.points.sources() == self.weights.control_points()
-            && session.settings.transform == self.session.settings.transform
-            && (session.settings.relax == 0.0 || self.elastic.is_some())
+        let same_way = session.points == self.session.points && session.settings == self.session.settings;
+        if same_way
+            || session.points.sources() == self.weights.control_points()
+                && session.settings.transform == self.session.settings.transform
+                && (session.settings.relax == 0.0 || self.elastic.is_some())
+                && !session.settings.no_folds
         {
             session.settings.check()?;
-            return Ok(Map { session, ..self.clone() });
+            let composed = self.composed.clone().filter(|_| same_way);
+            return Ok(Map { session, composed, ..self.clone() });
         }
-        Map::made(session, self.weights.clone(), self.elastic.clone())
+        let map = Map::made(session, self.weights.clone(), self.elastic.clone(), self.watched.clone())?;
+        map.unfolded(&mut |_| true)
     }
 
     /// The control points, the settings, and the frame in which the weights were trained.
@@ -195,6 +255,33 @@ impl Map {
         self.elastic.clone()
     }
 
+    /// Where it looks for folds, where it was fitted with `no_folds`.
+    pub fn watched(&self) -> Option<&Watched> {
+        self.watched.as_deref()
+    }
+
+    /// Its steps, with `no_folds`, and what was found of them.
+    pub fn composed(&self) -> Option<&Composed> {
+        self.composed.as_deref()
+    }
+
+    /// The same where they are more than one, so that the map is another one than without.
+    pub(crate) fn steps(&self) -> Option<&Arc<Composed>> {
+        self.composed.as_ref().filter(|composed| composed.steps().len() > 1)
+    }
+
+    /// Where the control points land, and the local maps there.
+    ///
+    /// # Errors
+    /// As [`Map::aim`].
+    pub fn landed(&self, aim: &Aim) -> Result<Deformed, Error> {
+        let (posed, temperature) = (self.session.posed(), self.session.settings.temperature);
+        match self.steps() {
+            Some(composed) => Ok(composed.land()?),
+            None => Ok(self.handles.land_with_maps(posed.aimed(aim), temperature)?),
+        }
+    }
+
     /// Where the nodes of the elastic shape go with what [`Map::aim`] found; `None` without `relax`, or where nothing moves.
     ///
     /// # Errors
@@ -221,11 +308,18 @@ impl Map {
         self.session.settings.transform
     }
 
-    /// Where to aim so that the control points arrive, as closely as the handles and each one's weight say.
+    /// Where to aim so that the control points arrive, as closely as the handles and each one's weight say; with several steps, in the first.
     ///
     /// # Errors
     /// Where the orientations do not fit.
     pub fn aim(&self) -> Result<Aim, Error> {
+        if let Some(composed) = self.steps() {
+            let misses = composed.misses().to_vec();
+            let farthest = (0..misses.len()).max_by(|&a, &b| misses[a].total_cmp(&misses[b]));
+            let unreached = farthest.filter(|&i| misses[i] > ARRIVED * self.side());
+            let soft = unreached.map(|i| Soft::Unreached(i, misses[i]));
+            return Ok(Aim { targets: composed.steps()[0].targets.clone(), misses, soft });
+        }
         self.session.aim(&self.handles, self.session.posed().pose())
     }
 
@@ -257,6 +351,9 @@ impl Map {
         maps: bool,
         progress: &mut Progress<'_>,
     ) -> Result<Deformed, Error> {
+        if let Some(composed) = self.steps() {
+            return Ok(composed.deform(bound, maps, progress)?);
+        }
         let (settings, posed) = (&self.session.settings, self.session.posed());
         let mut deformed = bound.deform(posed.aimed(aim), settings.temperature, maps, progress)?;
         if let Some(relaxed) = self.relaxed(aim)? {
@@ -278,6 +375,9 @@ impl Map {
         mut maps: Option<&mut [f64]>,
         progress: &mut Progress<'_>,
     ) -> Result<(), Error> {
+        if let Some(composed) = self.steps() {
+            return Ok(composed.deform_into(bound, y, maps, progress)?);
+        }
         let (settings, posed) = (&self.session.settings, self.session.posed());
         bound.deform_into(posed.aimed(aim), settings.temperature, y, maps.as_deref_mut(), progress)?;
         if let Some(relaxed) = self.relaxed(aim)? {

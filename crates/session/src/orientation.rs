@@ -103,6 +103,14 @@ impl Orientation {
         }
     }
 
+    /// The axis, as long as the angle is in radians: a turn of 370 degrees is not one of 10.
+    pub fn vector(&self) -> [f64; 3] {
+        let largest = self.axis.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+        let axis = self.axis.map(|c| c / largest);
+        let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
+        axis.map(|c| self.degrees.to_radians() * c / length)
+    }
+
     /// Oriented like this, and then by `further`.
     pub fn then(&self, further: &Orientation) -> Orientation {
         let (a, b) = (further.matrix(), self.matrix());

@@ -1,6 +1,6 @@
 //! What happened to the control points, and what a person should know of it, in words.
 
-use neuralmls_core::{softmax, Aim, Soft, Weights};
+use neuralmls_core::{softmax, Aim, Composed, Soft, Weights};
 
 use serde_json::json;
 
@@ -57,6 +57,12 @@ pub struct Report {
     pub warnings: Vec<String>,
     /// Where the control points land, m x d.
     pub places: Vec<f64>,
+    /// How many steps the map takes; 1 without `no_folds`.
+    pub steps: usize,
+    /// With `no_folds`: the least `det J` that was found on the shape and around it, at places other than those of the search.
+    pub least: Option<f64>,
+    /// With `no_folds`: which part of the shape folds over all the same.
+    pub folded: Option<f64>,
 }
 
 impl Report {
@@ -69,6 +75,9 @@ impl Report {
             "handles": self.handles,
             "soft": self.soft,
             "warnings": self.warnings,
+            "steps": self.steps,
+            "least": self.least,
+            "folded": self.folded,
         })
         .to_string()
     }
@@ -92,8 +101,7 @@ impl Map {
     pub fn report(&self, aim: &Aim, held: Option<&Held<'_>>) -> Result<Report, Error> {
         let points = &self.session().points;
         let (dim, posed, stay) = (points.dim(), self.session().posed(), points.stay());
-        let temperature = self.session().settings.temperature;
-        let landed = self.handles().land_with_maps(posed.aimed(aim), temperature)?;
+        let landed = self.landed(aim)?;
         let arrived = held.map_or_else(|| landed.positions.clone(), |held| (held.round)(&landed.positions));
         let maps = landed.maps.unwrap_or_default();
         let control_points: Vec<Arrival> = points
@@ -114,7 +122,8 @@ impl Map {
                 }),
             })
             .collect();
-        let remedy = match aim.soft.is_some() || self.any_short(aim) {
+        let in_steps = self.steps().is_some(); // what else would help is known of one step only
+        let remedy = match !in_steps && (aim.soft.is_some() || self.any_short(aim)) {
             true => self.remedy()?,
             false => None,
         };
@@ -129,7 +138,19 @@ impl Map {
         let coarse = held.and_then(|held| not_held(held, longest));
         let handles = self.in_words(soft.is_some(), self.any_short(aim), coarse.is_some());
         warnings.extend(coarse);
-        Ok(Report { control_points, handles, soft, not_arrived, warnings, places: arrived })
+        warnings.extend(self.still_folded());
+        let found = self.composed().map(Composed::found);
+        Ok(Report {
+            control_points,
+            handles,
+            soft,
+            not_arrived,
+            warnings,
+            places: arrived,
+            steps: self.composed().map_or(1, |composed| composed.steps().len()),
+            least: found.map(|found| found.least),
+            folded: found.map(|found| found.folded),
+        })
     }
 
     /// Whether one stays short of where it was to go.

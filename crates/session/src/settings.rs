@@ -152,6 +152,8 @@ pub struct Settings {
     pub handles: HandlesSetting,
     /// How far the elastic finish goes, 0 (none) to 1 (all of it).
     pub relax: f64,
+    /// Whether the map is to fold nothing: in as many small steps as that takes.
+    pub no_folds: bool,
 }
 
 impl Default for Settings {
@@ -162,6 +164,7 @@ impl Default for Settings {
             temperature: 1.0,
             handles: HandlesSetting::Auto,
             relax: 0.0,
+            no_folds: false,
         }
     }
 }
@@ -201,7 +204,23 @@ impl Settings {
         if let HandlesSetting::Part(share) = self.handles {
             check_share("handles", share)?;
         }
-        check_share("relax", self.relax)
+        check_share("relax", self.relax)?;
+        self.check_no_folds()
+    }
+
+    /// Shape-aware weights and the elastic finish would have to learn from the whole shape at each step.
+    fn check_no_folds(&self) -> Result<(), Error> {
+        if self.no_folds && matches!(self.weights, WeightsSettings::ShapeAware { .. }) {
+            let message = "no_folds: it needs neural or inverse-distance weights, found shape-aware ones";
+            return Err(Error::argument(message));
+        }
+        if self.no_folds && self.relax > 0.0 {
+            let found = number(self.relax);
+            return Err(Error::argument(format!(
+                "no_folds: it cannot be had with relax, found relax {found}"
+            )));
+        }
+        Ok(())
     }
 }
 
@@ -257,6 +276,13 @@ mod tests {
         assert_eq!(says(far), "handles: expected a number of at least 0 and at most 1, found 1.5");
         let limp = Settings { relax: -0.5, ..some() };
         assert_eq!(says(limp), "relax: expected a number of at least 0 and at most 1, found -0.5");
+        let aware = Settings { weights: WeightsSettings::ShapeAware { seed: 0 }, no_folds: true, ..some() };
+        assert_eq!(
+            says(aware),
+            "no_folds: it needs neural or inverse-distance weights, found shape-aware ones"
+        );
+        let both = Settings { relax: 0.5, no_folds: true, ..some() };
+        assert_eq!(says(both), "no_folds: it cannot be had with relax, found relax 0.5");
         let unsaid = Settings { relax: f64::NAN, ..some() };
         assert_eq!(says(unsaid), "relax: expected a number of at least 0 and at most 1, found nan");
         let weights = WeightsSettings::InverseDistance { alpha: f64::INFINITY, epsilon: 0.0 };

@@ -124,6 +124,78 @@ fn what_no_shape_was_known_for_cannot_relax() {
     assert_eq!((error.kind, &error.message[..]), (ErrorKind::Argument, expected));
 }
 
+/// Two control points that change places, among points of a spiral.
+fn unfolded(weights: WeightsSettings) -> Map {
+    let mut session = moved(&moved(&session(weights), "p3", [0.1, -1.7, -0.4]), "p5", [-0.2, 1.7, 0.4]);
+    session.settings.no_folds = true;
+    let bounds = Bounds::new(vec![-1.0; 3], vec![1.0; 3], 3).unwrap();
+    let x: Vec<f64> = (0..3000).map(|i| (f64::from(i) * 0.7).sin()).collect();
+    let shape = neuralmls_core::Shape { x: &x, faces: &[] };
+    session.fit(Some(&bounds), Some(shape), &mut |_| true).unwrap()
+}
+
+#[test]
+fn a_saved_map_has_all_of_its_steps_to_the_bit() {
+    for weights in [neural(), classic()] {
+        let map = unfolded(weights);
+        let report = map.report(&map.aim().unwrap(), None).unwrap();
+        assert!(report.steps > 1 && report.folded == Some(0.0) && report.least.unwrap() > 0.0, "{report:?}");
+        assert!(report.control_points.iter().all(|point| point.distance_to_target < 2e-6));
+        assert_eq!(report.handles, "exact");
+        let bytes = map.to_bytes();
+        let again = Map::from_bytes(&bytes).unwrap();
+        assert_eq!(again.to_bytes(), bytes);
+        let x = places();
+        let found = again.at(&x, &mut |_| true).unwrap();
+        assert_eq!(found, map.at(&x, &mut |_| true).unwrap());
+        assert_eq!(again.report(&again.aim().unwrap(), None).unwrap(), report);
+        // Other targets are searched for anew, and the same ones found again.
+        let other = moved_map(&again);
+        assert_ne!(other.at(&x, &mut |_| true).unwrap(), found);
+        assert_eq!(other.with(map.session().clone()).unwrap().to_bytes(), bytes);
+        let mut one = map.session().clone();
+        one.settings.no_folds = false;
+        let one = map.with(one).unwrap();
+        assert_eq!(one.report(&one.aim().unwrap(), None).unwrap().steps, 1);
+        assert_eq!(one.with(map.session().clone()).unwrap().to_bytes(), bytes);
+    }
+}
+
+#[test]
+fn steps_are_undone() {
+    let map = unfolded(classic());
+    let x = places();
+    let y = map.at(&x, &mut |_| true).unwrap();
+    let back = map.inverse(&y, false, &mut |_| true).unwrap();
+    assert!(back.points.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-8));
+}
+
+#[test]
+fn a_map_without_its_steps_is_refused() {
+    let bytes = unfolded(classic()).to_bytes();
+    for (array, other) in
+        [("step1_alpha", "step1_alphb"), ("step0_targets", "step0_targetz"), ("found_at", "found_az")]
+    {
+        let at = bytes.windows(array.len()).position(|window| window == array.as_bytes()).unwrap();
+        let mut broken = bytes.clone();
+        broken[at..at + array.len()].copy_from_slice(other.as_bytes());
+        assert!(Map::from_bytes(&broken).err().unwrap().message.starts_with("this is no map"), "{array}");
+    }
+}
+
+#[test]
+fn where_no_folds_are_looked_for_there_must_be_a_shape() {
+    let mut session = session(classic());
+    session.settings.no_folds = true;
+    let error = session.fit(None, None, &mut |_| true).err().unwrap();
+    assert_eq!(error.message, "shapes: no_folds needs at least one shape, where folds are looked for");
+    let error = fitted(&self::session(classic())).with(session).err().unwrap();
+    assert_eq!(
+        error.message,
+        "no_folds: the map was fitted without, and knows no shape; fit it with no_folds"
+    );
+}
+
 #[test]
 fn a_session_keeps_the_frame_in_which_it_was_fitted() {
     let map = fitted(&session(neural()));
@@ -262,8 +334,9 @@ fn advice_names_a_fold_and_who_is_about_it() {
     session.settings.weights = classic();
     let map = session.fit(None, None, &mut |_| true).unwrap();
     let x: Vec<f64> = (0..1000).flat_map(|i| [f64::from(i % 37) / 36.0, f64::from(i / 37) / 27.0]).collect();
-    let found = map.advise(&map.probe(&x, &[]).unwrap(), &mut || None).unwrap();
+    let found = map.advise(&map.probe(&x, &[]).unwrap(), &mut || None, true).unwrap();
     let fold = found.iter().find(|advice| advice.kind == "folds").unwrap();
+    assert!(fold.sentence.ends_with("steps, with no_folds, it is 0 %"), "{}", fold.sentence);
     assert!(fold.sentence.contains("of the shape is folded over, most of all near '"), "{}", fold.sentence);
     assert!(fold.control_points.iter().all(|i| [1, 2].contains(i)), "{fold:?}");
 }

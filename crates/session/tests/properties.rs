@@ -110,13 +110,12 @@ fn settings() -> impl Strategy<Value = Settings> {
         prop::sample::select(vec![HandlesSetting::Auto, HandlesSetting::Exact, HandlesSetting::Soft]),
         (0.0..=1.0f64).prop_map(HandlesSetting::Part),
     ];
-    (weights, transform, above_0(), handles, 0.0..=1.0f64).prop_map(
-        |(weights, transform, temperature, handles, relax)| Settings {
-            weights,
-            transform,
-            temperature,
-            handles,
-            relax,
+    (weights, transform, above_0(), handles, 0.0..=1.0f64, any::<bool>()).prop_map(
+        |(weights, transform, temperature, handles, relax, no_folds)| {
+            // These do not go together.
+            let no_folds = no_folds && !matches!(weights, WeightsSettings::ShapeAware { .. });
+            let relax = if no_folds { 0.0 } else { relax };
+            Settings { weights, transform, temperature, handles, relax, no_folds }
         },
     )
 }

@@ -61,7 +61,7 @@ impl Points {
         }
         let probe = bound.probe.as_mut().expect("made above");
         bound.map.set_up(probe);
-        let found = bound.map.advise(probe, &mut || None).map_err(refused)?;
+        let found = bound.map.advise(probe, &mut || None, false).map_err(refused)?;
         Ok(neuralmls_session::advice_to_json(&found))
     }
 }

@@ -46,5 +46,5 @@ test.each(faces.sessions)("$name", { timeout: 60_000 }, ({ settings, frame, move
 
 test("all weights are among them", () => {
   expect(new Set(faces.sessions.map(kindOf))).toEqual(new Set(["neural", "shape-aware", "inverse-distance"]));
-  expect(faces.sessions).toHaveLength(22);
+  expect(faces.sessions).toHaveLength(23);
 });

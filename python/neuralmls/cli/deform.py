@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from neuralmls.arrays import Progress
     from neuralmls.session import Map, Session
     from neuralmls.shape import Shape
 
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     multiple=True,
     help="Turn a control point, and what is near it, or a group; AXIS is x, y, z or three numbers. May be repeated.",
 )
+@click.option("--inverse", is_flag=True, help="Undo the map: what was deformed by it comes back.")
 @click.option("--check", is_flag=True, help="Say where the result is likely bad, and what would help.")
 @options.json
 @options.quiet
@@ -57,6 +59,7 @@ def deform(
     said: dict[str, Any],
     offsets: Sequence[str],
     turns: Sequence[str],
+    inverse: bool,
     check: bool,
     json: bool,
     quiet: bool,
@@ -67,7 +70,8 @@ def deform(
 
     Writes the same files with new positions. Everything else in them is carried over; unmoved control
     points give the very same bytes. Several shapes are bent by one map, so that they stay together.
-    What a session sets (weights, transform, temperature, handles, relax) holds where no option says otherwise.
+    What a session sets (weights, transform, temperature, handles, relax, no_folds) holds where no option says
+    otherwise.
 
     Example: neuralmls deform chair.obj --points chair.json -o bent.obj
     """
@@ -83,6 +87,8 @@ def deform(
         session = inputs.settings_of(said, session)
         session = session.replace(points=moves.moved(session.points, offsets, turns))
         ready = None if ready is None else ready.with_session(session)
+        if inverse and ready is None:
+            _check_undoable(session)
         moved = bool((session.points.targets != session.points.sources).any()) or session.points.is_oriented
         read = []
         for path, file in zip(shapes, files, strict=True):
@@ -106,7 +112,7 @@ def deform(
     results = []
     for shape, file in read:
         with failed:
-            results.append(_bent(shape, file, ready, stages, check=check, force=force))
+            results.append(_bent(shape, file, ready, stages, inverse=inverse, check=check, force=force))
     for sentence in dict.fromkeys(warning for told in results for warning in told["warnings"]):
         console.warning(sentence)
     _tell(results, stages, warnings, source, json=json, quiet=quiet, verbose=verbose)
@@ -154,7 +160,7 @@ def _session(
     ready = Map.load(saved)
     if session is None:
         return ready.session, ready, ()
-    shared = ("transform", "temperature", "handles", "relax")
+    shared = ("transform", "temperature", "handles", "relax", "no_folds")
     said = {key: session.settings[key] for key in shared if session.has_settings}
     try:
         ready = ready.with_session(ready.session.replace(points=session.points, **said))
@@ -179,22 +185,47 @@ def _read(path: Path, file: Path, *, moved: bool, force: bool, sized: bool) -> S
     return shape
 
 
-def _bent(shape: Shape, file: Path, map: Map, stages: Stages, *, check: bool, force: bool) -> dict[str, Any]:
-    """Bend one shape and write it; what is to be told of it."""
+def _check_undoable(session: Session) -> None:
+    """Refuse weights that hang on the shape at rest, which only a map or a frame tells of a deformed one."""
+    kind, weights = session.weights, session.settings["weights"]
+    framed = session.frame is not None and kind != "shape-aware" and session.settings["relax"] == 0
+    if not framed and (kind != "inverse-distance" or weights.get("epsilon")):
+        raise ArgumentError(
+            "--inverse: the weights hang on the shape at rest, which the deformed one does not tell: "
+            "give the map of `neuralmls fit` with --map"
+        )
+
+
+def _bent(
+    shape: Shape, file: Path, map: Map, stages: Stages, *, inverse: bool, check: bool, force: bool
+) -> dict[str, Any]:
+    """Bend one shape, or undo that, and write it; what is to be told of it."""
     from neuralmls.cli import summary
 
-    with stages.stage("bind") as report:
-        bound = map.bind(shape, progress=report)
-    with stages.stage("move") as report:
-        positions, maps = map.frame(bound, return_maps=shape.has_normals, progress=report)
-        told = map.report(shape)
+    if inverse:
+        with stages.stage("move") as report:
+            positions, maps = _undone(shape, map, report)
+    else:
+        with stages.stage("bind") as report:
+            bound = map.bind(shape, progress=report)
+        with stages.stage("move") as report:
+            positions, maps = map.frame(bound, return_maps=shape.has_normals, progress=report)
+    told = map.report(shape)
     advice = []
     if check:
         with stages.stage("check"):
-            advice = map.advise(shape)
+            advice = map.advise(positions, shape.faces) if inverse else map.advise(shape)
     with stages.stage("write"):
         written, kept = _write(shape, file, positions, maps, force=force)
     return summary.summary(shape, file, map, told, advice if check else None, written, kept)
+
+
+def _undone(shape: Shape, map: Map, report: Progress | None) -> tuple[NDArray[np.floating], NDArray[np.float64]]:
+    try:
+        positions, maps = map.inverse(shape, return_maps=True, progress=report)
+    except ArgumentError as error:
+        raise ArgumentError(f"--inverse: {shape.path}: {error}") from None
+    return positions, maps
 
 
 def _write(

@@ -70,6 +70,13 @@ MOTION = (
         help="How far the elastic finish goes, 0 (none) to 1: the shape's own stiffness decides what control points "
         "leave open.  [default: 0]",
     ),
+    click.option(
+        "--no-folds/--one-step",
+        "no_folds",
+        default=None,
+        help="Fold nothing of the shape over: where one step does, take as many small ones as it needs.  "
+        "[default: one step]",
+    ),
 )
 
 

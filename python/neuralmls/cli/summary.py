@@ -55,6 +55,10 @@ def summary(
         "temperature": session.settings["temperature"],
         "handles": session.settings["handles"],
         "relax": session.settings["relax"],
+        "no_folds": session.settings["no_folds"],
+        "steps": report.steps,
+        "least": report.least,
+        "folded": report.folded,
         "arrival": report.handles,
         "soft": report.soft,
         "control_points": told,
@@ -87,6 +91,7 @@ def show(told: dict[str, Any], *, everything: bool, file: TextIO) -> None:
             ),
             ("weights", _weights(weights)),
             ("transform", f"{told['transform']}, temperature {told['temperature']:g}" + _relax(told["relax"])),
+            *_steps(told),
             *_handles(told),
             ("seconds", ", ".join(f"{name} {value:.2f}" for name, value in told["seconds"].items())),
             ("", f"{sum(told['seconds'].values()):.2f} in all"),
@@ -131,6 +136,14 @@ def _handles(told: dict[str, Any]) -> list[tuple[str, str]]:
     if told["session"] is not None:
         lines.append(f"settings of {told['session']}")
     return list(zip(["handles", *[""] * len(lines)], lines, strict=False))
+
+
+def _steps(told: dict[str, Any]) -> list[tuple[str, str]]:
+    """In how many steps nothing folds, and how much room the narrowest place keeps."""
+    if not told["no_folds"]:
+        return []
+    count = told["steps"]
+    return [("no folds", f"{count} step{'s' if count > 1 else ''}, least det J {told['least']:.2g}")]
 
 
 def _relax(relax: float) -> str:

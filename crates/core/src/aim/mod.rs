@@ -230,7 +230,12 @@ impl Handles {
     }
 
     /// Where an aim is to take the control points: the part `adherence` of the way from where plain MLS takes them to their targets.
-    fn goal(&self, pose: Pose<'_>, temperature: f64, adherence: &[f64]) -> Result<Vec<f64>, Error> {
+    pub(crate) fn goal(
+        &self,
+        pose: Pose<'_>,
+        temperature: f64,
+        adherence: &[f64],
+    ) -> Result<Vec<f64>, Error> {
         let m = self.p.len() / self.dim;
         if adherence.len() != 1 && adherence.len() != m {
             let message = format!(

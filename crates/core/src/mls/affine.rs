@@ -5,25 +5,26 @@
 //! the best map in the span and G on the rest where it does not, and goes from one to the other continuously.
 
 use super::matrix::{cholesky, norm, solve, Matrix};
-use super::moments::Moments;
 
 /// What stands for the missing extent of the control points, relative to the one they have. Smaller than the rotation's
 /// anchor: the residuals, unlike C, are exact where the anchor is right.
 pub const RIDGE: f64 = 1e-12;
 
-/// `moments` are those of the residuals of `g`.
-pub(super) fn linear<const D: usize>(moments: &Moments<D>, g: &Matrix<D>) -> Matrix<D> {
-    let (pp, residual) = (&moments.pp, &moments.pq);
+/// `pp` is P, `residual` the moments C of what `g` leaves.
+pub(super) fn linear<const D: usize>(residual: &Matrix<D>, pp: &Matrix<D>, g: &Matrix<D>) -> Matrix<D> {
+    let Some(lower) = ridged(pp).as_ref().and_then(cholesky) else { return *g };
     let size = norm(pp);
-    if !(size > 0.0 && size.is_finite()) {
-        return *g;
-    }
-    let ridged: Matrix<D> =
-        std::array::from_fn(|r| std::array::from_fn(|c| pp[r][c] / size + if r == c { RIDGE } else { 0.0 }));
-    let Some(lower) = cholesky(&ridged) else { return *g };
     std::array::from_fn(|r| {
         // The matrix is symmetric: a row of X S = E^T is the solution for a column of E.
         let row = solve(&lower, std::array::from_fn(|c| residual[c][r] / size));
         std::array::from_fn(|c| g[r][c] + row[c])
+    })
+}
+
+/// `P / |P| + 1e-12 I`; `None` where the weighted control points are in one place.
+pub(super) fn ridged<const D: usize>(pp: &Matrix<D>) -> Option<Matrix<D>> {
+    let size = norm(pp);
+    (size > 0.0 && size.is_finite()).then(|| {
+        std::array::from_fn(|r| std::array::from_fn(|c| pp[r][c] / size + if r == c { RIDGE } else { 0.0 }))
     })
 }

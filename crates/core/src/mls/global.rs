@@ -58,7 +58,7 @@ impl<const D: usize> Global<D> {
         let scale = similarity::scale(&moments, &rotation, 1.0);
         let mut residuals = Moments::new(p, q, &equal, dominant, Some(&rotation));
         oriented::add(&mut residuals, oriented, &equal, dominant, Some(&rotation));
-        let linear = affine::linear(&residuals, &rotation);
+        let linear = affine::linear(&residuals.pq, &residuals.pp, &rotation);
         Global { rotation, scale, linear }
     }
 }
@@ -210,7 +210,7 @@ impl Arm {
 }
 
 /// The quaternion `(1, z)` times `u`, its length 1.
-fn turned_by(&[w, x, y, z]: &[f64; 4], t: &[f64; 3]) -> [f64; 4] {
+pub(super) fn turned_by(&[w, x, y, z]: &[f64; 4], t: &[f64; 3]) -> [f64; 4] {
     let u = [
         w - t[0] * x - t[1] * y - t[2] * z,
         x + t[0] * w + t[1] * z - t[2] * y,

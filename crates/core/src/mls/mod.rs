@@ -11,14 +11,17 @@ pub(crate) mod batch;
 mod global;
 pub(crate) mod matrix;
 mod moments;
+mod number;
 mod oriented;
 mod piece;
 mod rotation;
 mod similarity;
+mod slope;
 mod transform;
 
 pub use affine::RIDGE;
 pub use piece::{piece, Piece};
+pub(crate) use rotation::best_quaternion;
 pub use rotation::{best_rotation, ANCHOR_WEIGHT};
 pub use transform::Transform;
 
@@ -27,6 +30,7 @@ use crate::softmax::Dominant;
 pub(crate) use global::Global;
 use matrix::Matrix;
 use moments::Moments;
+pub(crate) use number::Dual;
 use oriented::Oriented;
 pub(crate) use oriented::{check as check_orientations, oriented, squares};
 
@@ -113,7 +117,7 @@ impl<'a, const D: usize> Mls<'a, D> {
                 let scale = similarity::scale(&moments, &rotation, self.anchor.scale);
                 matrix::scaled(&rotation, scale)
             }
-            Transform::Affine => affine::linear(&moments, &self.anchor.linear),
+            Transform::Affine => affine::linear(&moments.pq, &moments.pp, &self.anchor.linear),
         };
         let arm: [f64; D] = std::array::from_fn(|k| x[k] - moments.p_mean[k]);
         let moved = matrix::apply(&map, &arm);

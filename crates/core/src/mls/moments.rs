@@ -11,33 +11,34 @@
 //! already right they are zero to the last digit, and no ill-conditioned system can blow them up.
 
 use super::matrix::{apply, Matrix};
+use super::number::Number;
 use crate::softmax::Dominant;
 
 /// Moments of one point, the second ones divided by its second-largest weight.
-pub(super) struct Moments<const D: usize> {
+pub(super) struct Moments<const D: usize, S = f64> {
     /// `p*`.
-    pub p_mean: [f64; D],
+    pub p_mean: [S; D],
     /// `q* - p*`.
-    pub shift: [f64; D],
+    pub shift: [S; D],
     /// `C / w_2`, `C = sum w_i (p_i - p*)(q_i - q*)^T`; with a base map, of the residuals in place of q.
-    pub pq: Matrix<D>,
+    pub pq: [[S; D]; D],
     /// The same of p with itself.
-    pub pp: Matrix<D>,
+    pub pp: [[S; D]; D],
 }
 
-impl<const D: usize> Moments<D> {
+impl<const D: usize, S: Number> Moments<D, S> {
     pub(super) fn new(
         p: &[[f64; D]],
         q: &[[f64; D]],
-        relative: &[f64],
-        dominant: Dominant,
+        relative: &[S],
+        dominant: Dominant<S>,
         base: Option<&Matrix<D>>,
     ) -> Self {
         let Dominant { index: k, second } = dominant;
-        let (mut sum_a, mut sum_b, mut sum_shift) = ([0.0; D], [0.0; D], [0.0; D]);
-        let (mut pq, mut pp) = ([[0.0; D]; D], [[0.0; D]; D]);
+        let (mut sum_a, mut sum_b, mut sum_shift) = ([S::ZERO; D], [S::ZERO; D], [S::ZERO; D]);
+        let (mut pq, mut pp) = ([[S::ZERO; D]; D], [[S::ZERO; D]; D]);
         for (i, &r) in relative.iter().enumerate() {
-            if i == k || r == 0.0 {
+            if i == k || r.value() == 0.0 {
                 continue;
             }
             let a: [f64; D] = std::array::from_fn(|c| p[i][c] - p[k][c]);
@@ -65,8 +66,8 @@ impl<const D: usize> Moments<D> {
             }
         }
         Moments {
-            p_mean: std::array::from_fn(|c| p[k][c] + second * sum_a[c]),
-            shift: std::array::from_fn(|c| (q[k][c] - p[k][c]) + second * sum_shift[c]),
+            p_mean: std::array::from_fn(|c| second * sum_a[c] + p[k][c]),
+            shift: std::array::from_fn(|c| second * sum_shift[c] + (q[k][c] - p[k][c])),
             pq,
             pp,
         }

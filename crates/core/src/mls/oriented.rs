@@ -20,6 +20,7 @@
 
 use super::matrix::Matrix;
 use super::moments::Moments;
+use super::number::Number;
 use crate::error::Error;
 use crate::softmax::Dominant;
 
@@ -131,24 +132,24 @@ pub(crate) fn squares<const D: usize>(p: &[[f64; D]]) -> Vec<f64> {
 }
 
 /// What the oriented control points add to C, kept for the scale.
-pub(super) struct Added<const D: usize> {
+pub(super) struct Added<const D: usize, S = f64> {
     /// `sum u_i rho_i^2 R_i^T`, at the scale of the moments.
-    rotation: Matrix<D>,
+    rotation: [[S; D]; D],
     /// `sum u_i rho_i^2 s_i`.
-    scale: f64,
+    scale: S,
 }
 
 /// Adds the oriented control points to the moments, which thereafter are divided by 1, not by `w_2`, if the dominant control point is one of
 /// them. With a `base` map the moments are those of residuals, and scales count.
-pub(super) fn add<const D: usize>(
-    moments: &mut Moments<D>,
+pub(super) fn add<const D: usize, S: Number>(
+    moments: &mut Moments<D, S>,
     oriented: &[Oriented<D>],
-    relative: &[f64],
-    dominant: Dominant,
+    relative: &[S],
+    dominant: Dominant<S>,
     base: Option<&Matrix<D>>,
-) -> Added<D> {
+) -> Added<D, S> {
     let Dominant { index: k, second } = dominant;
-    let mut added = Added { rotation: [[0.0; D]; D], scale: 0.0 };
+    let mut added = Added { rotation: [[S::ZERO; D]; D], scale: S::ZERO };
     if oriented.is_empty() {
         return added;
     }
@@ -157,12 +158,13 @@ pub(super) fn add<const D: usize>(
         moments.pq = moments.pq.map(|row| row.map(|e| second * e));
         moments.pp = moments.pp.map(|row| row.map(|e| second * e));
     }
-    let rest: f64 = relative.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, r)| r).sum();
+    let others = relative.iter().enumerate().filter(|(i, _)| *i != k);
+    let rest = others.fold(S::ZERO, |sum, (_, r)| sum + *r);
     for t in oriented {
-        let relative = if t.index == k { 0.0 } else { relative[t.index] };
-        let w = if t.index == k { 1.0 - second * rest } else { second * relative };
+        let relative = if t.index == k { S::ZERO } else { relative[t.index] };
+        let w = if t.index == k { second * rest * -1.0 + 1.0 } else { second * relative };
         // u / w_2, or u.
-        let share = t.square * w * if owned { w } else { relative };
+        let share = w * t.square * if owned { w } else { relative };
         for r in 0..D {
             for c in 0..D {
                 let turn = t.rotation[c][r];
@@ -176,9 +178,9 @@ pub(super) fn add<const D: usize>(
     added
 }
 
-impl<const D: usize> Added<D> {
+impl<const D: usize, S: Number> Added<D, S> {
     /// Makes of moments that a rotation was found from those that its scale is found from.
-    pub(super) fn align(&self, moments: &mut Moments<D>, rotation: &Matrix<D>) {
+    pub(super) fn align(&self, moments: &mut Moments<D, S>, rotation: &[[S; D]; D]) {
         for (r, row) in moments.pq.iter_mut().enumerate() {
             for (c, moment) in row.iter_mut().enumerate() {
                 *moment += self.scale * rotation[c][r] - self.rotation[r][c];

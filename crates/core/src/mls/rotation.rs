@@ -11,7 +11,8 @@
 //! eigenvector of a symmetric 4 x 4 matrix for its largest eigenvalue, which cyclic Jacobi rotations find to full
 //! precision relative to the gap, with no special cases.
 
-use super::matrix::{norm, Matrix};
+use super::global::turned_by;
+use super::matrix::{cholesky, norm, solve, Matrix};
 
 /// How much the global map counts against the local one, relative to its size: enough to decide what is open, too little to
 /// be seen where anything is determined.
@@ -20,6 +21,51 @@ pub const ANCHOR_WEIGHT: f64 = 1e-9;
 /// The rule: the rotation that `moment` (C, at any scale) asks for, with the anchor `g` where it leaves something open.
 pub(super) fn anchored<const D: usize>(moment: &Matrix<D>, g: &Matrix<D>) -> Matrix<D> {
     best_rotation(&target(moment, g))
+}
+
+/// The same from a rotation that is near it, as that of a place nearby is, by Newton's method: `u`, which becomes its own. In 3D sooner there than
+/// Jacobi rotations are.
+pub(super) fn anchored_near<const D: usize>(
+    moment: &Matrix<D>,
+    g: &Matrix<D>,
+    u: &mut [f64; 4],
+) -> Matrix<D> {
+    let target = target(moment, g);
+    if D != 3 {
+        return best_rotation(&target);
+    }
+    *u = refined(&target, *u).unwrap_or_else(|| best_quaternion(&target));
+    let full = of_quaternion(u);
+    std::array::from_fn(|r| std::array::from_fn(|c| full[r][c]))
+}
+
+/// Newton's method for `tr(R A)` (docs/rotation.md, eq. 9) until a step leaves nothing; `None` where it is not at the maximum, where alone
+/// `H = tr(S) I - S` is positive definite, or takes too long.
+fn refined<const D: usize>(a: &Matrix<D>, mut u: [f64; 4]) -> Option<[f64; 4]> {
+    /// From a tenth of a radian there are three.
+    const MOST_STEPS: usize = 5;
+    /// The square of a last step, which leaves its own square.
+    const LAST: f64 = 1e-16;
+    for _ in 0..MOST_STEPS {
+        let r = of_quaternion(&u);
+        let s: Matrix<3> =
+            std::array::from_fn(|i| std::array::from_fn(|k| (0..3).map(|l| r[i][l] * a[l][k]).sum()));
+        let trace = s[0][0] + s[1][1] + s[2][2];
+        let h: Matrix<3> = std::array::from_fn(|i| {
+            std::array::from_fn(|k| f64::from(u8::from(i == k)) * trace - 0.5 * (s[i][k] + s[k][i]))
+        });
+        let z = solve(&cholesky(&h)?, [s[1][2] - s[2][1], s[2][0] - s[0][2], s[0][1] - s[1][0]]);
+        let size: f64 = z.iter().map(|e| e * e).sum();
+        // Not if it is NaN; a longer step than a radian is out of what the method is good for.
+        if size.is_nan() || size > 1.0 {
+            return None;
+        }
+        u = turned_by(&u, &z.map(|e| 0.5 * e));
+        if size < LAST {
+            return Some(u);
+        }
+    }
+    None
 }
 
 /// `C / |C| + 1e-9 G^T`.
@@ -111,7 +157,7 @@ pub fn best_rotation<const D: usize>(c: &Matrix<D>) -> Matrix<D> {
 }
 
 /// Its quaternion, in 3D.
-pub(super) fn best_quaternion<const D: usize>(c: &Matrix<D>) -> [f64; 4] {
+pub(crate) fn best_quaternion<const D: usize>(c: &Matrix<D>) -> [f64; 4] {
     let (values, vectors) = eigen(horn(c));
     unit(&vectors, greatest(&values))
 }

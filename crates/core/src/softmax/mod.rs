@@ -13,11 +13,11 @@ pub(crate) use packed::{PackedWeights, Row, LANES};
 
 /// The weights of one point, in the form that [`crate::mls`] takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dominant {
+pub struct Dominant<S = f64> {
     /// The control point with the largest logit.
     pub index: usize,
     /// The second-largest weight itself, in `[0, 1/2]`.
-    pub second: f64,
+    pub second: S,
 }
 
 /// Checks a temperature.
@@ -30,36 +30,41 @@ pub fn check_temperature(temperature: f64) -> Result<(), Error> {
 
 /// Fills `relative` with `w_i / w_second` for all i but the dominant one (there: 0), and returns which one that is, with the
 /// second-largest weight. A logit of +infinity (a point on a control point) is a weight of 1.
-pub fn relative_weights(logits: &[f32], temperature: f64, relative: &mut [f64]) -> Dominant {
+pub fn relative_weights<L: Copy + Into<f64>>(
+    logits: &[L],
+    temperature: f64,
+    relative: &mut [f64],
+) -> Dominant {
+    let logit = |i: usize| -> f64 { logits[i].into() };
     let mut index = 0;
-    for (i, &l) in logits.iter().enumerate() {
-        if l > logits[index] {
+    for i in 0..logits.len() {
+        if logit(i) > logit(index) {
             index = i;
         }
     }
-    let mut second = f32::NEG_INFINITY;
-    for (i, &l) in logits.iter().enumerate() {
-        if i != index && l > second {
-            second = l;
+    let mut second = f64::NEG_INFINITY;
+    for i in 0..logits.len() {
+        if i != index && logit(i) > second {
+            second = logit(i);
         }
     }
     let mut sum = 0.0;
-    for (i, (r, &l)) in relative.iter_mut().zip(logits).enumerate() {
+    for (i, r) in relative.iter_mut().take(logits.len()).enumerate() {
         *r = if i == index {
             0.0
-        } else if l == second {
+        } else if logit(i) == second {
             1.0
         } else {
-            ((f64::from(l) - f64::from(second)) / temperature).exp()
+            ((logit(i) - second) / temperature).exp()
         };
         sum += *r;
     }
     let ratio = if logits.len() < 2 {
         0.0
-    } else if second == logits[index] {
+    } else if second == logit(index) {
         1.0
     } else {
-        ((f64::from(second) - f64::from(logits[index])) / temperature).exp()
+        ((second - logit(index)) / temperature).exp()
     };
     Dominant { index, second: ratio / (1.0 + ratio * sum) }
 }

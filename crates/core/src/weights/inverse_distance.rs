@@ -86,6 +86,24 @@ impl InverseDistance {
         Ok(logits)
     }
 
+    /// The logits of one point in double precision, and their derivatives by its coordinates in the frame. On a control point (where without
+    /// epsilon the logit is +infinity) the derivatives of its own are 0, the mean over all directions.
+    pub(crate) fn slopes<const D: usize>(&self, x: &[f64; D], logits: &mut [f64], slopes: &mut [[f64; D]]) {
+        for ((p, logit), slope) in self.p.chunks_exact(D).zip(logits).zip(slopes) {
+            let arm: [f64; D] = std::array::from_fn(|k| (x[k] - p[k]) / self.frame.half);
+            let squared: f64 = arm.iter().map(|a| a * a).sum();
+            let (value, rate) = if self.epsilon == 0.0 {
+                (-self.alpha * squared.ln(), self.alpha / squared)
+            } else {
+                let power = squared.powf(self.alpha);
+                let sum = power + self.epsilon;
+                (-sum.ln(), self.alpha * power / squared / sum)
+            };
+            *logit = value;
+            *slope = if squared > 0.0 { arm.map(|a| -2.0 * rate * a) } else { [0.0; D] };
+        }
+    }
+
     fn logit(&self, x: &[f64], p: &[f64]) -> f32 {
         let squared: f64 = x.iter().zip(p).map(|(x, p)| ((x - p) / self.frame.half).powi(2)).sum();
         let logit = if self.epsilon == 0.0 {

@@ -14,6 +14,8 @@ use crate::machine::progress::{report, Progress};
 
 /// Points evaluated at once by one thread: the activations of both hidden layers stay in its cache.
 const BLOCK: usize = 128;
+/// The same of points and their derivatives, which are four rows a point.
+const BLOCK_OF_SLOPES: usize = 32;
 /// Points between two reports of progress.
 const CHUNK: usize = 1 << 14;
 
@@ -91,12 +93,91 @@ fn evaluate(network: &Parameters, mut input: Vec<f32>, logits: &mut [f32]) {
     linear(last, &input, logits);
 }
 
+/// Writes the logits of the points `x`, and after those of each point their derivatives by its normalised coordinates: n x (1 + d) x m.
+pub(super) fn write_slopes(
+    network: &Parameters,
+    x: &[f64],
+    out: &mut [f32],
+    progress: &mut Progress<'_>,
+) -> Result<(), Error> {
+    let (dim, width) = (network.dim, network.outputs() * (1 + network.dim));
+    let chunks = out.len().div_ceil(CHUNK * width).max(1);
+    for (index, (x, out)) in x.chunks(CHUNK * dim).zip(out.chunks_mut(CHUNK * width)).enumerate() {
+        report(progress, index as f64 / chunks as f64)?;
+        for_each_block(out, BLOCK_OF_SLOPES * width, |block, out| {
+            let x = x[BLOCK_OF_SLOPES * dim * block..].chunks_exact(dim);
+            let points: Vec<[f32; 3]> =
+                x.take(out.len() / width).map(|x| network.frame.enter_single(x)).collect();
+            differentiate(network, &points, out);
+        });
+    }
+    report(progress, 1.0)
+}
+
+/// The same of the points at some places of the tree.
+///
+/// # Safety
+/// Nobody else may use these points' rows meanwhile.
+pub(super) unsafe fn differentiate_places(
+    network: &Parameters,
+    tree: &PointTree,
+    places: Range<usize>,
+    rows: &SharedRows<'_>,
+) {
+    let width = network.outputs() * (1 + network.dim);
+    let points: Vec<[f32; 3]> = places.clone().map(|place| tree.point(place)).collect();
+    let mut out = vec![0.0; points.len() * width];
+    differentiate(network, &points, &mut out);
+    for (out, row) in out.chunks_exact(width).zip(Order::Given.rows(tree, places)) {
+        // SAFETY: as the caller promises.
+        unsafe { rows.row(row) }.copy_from_slice(out);
+    }
+}
+
+/// Forward mode: beside the points' neurons those of each coordinate's change, which ReLU lets through where the neuron is on.
+fn differentiate(network: &Parameters, points: &[[f32; 3]], out: &mut [f32]) {
+    let (n, dim, m) = (points.len(), network.dim, network.outputs());
+    let (mut input, mut change) = (Vec::new(), Vec::new());
+    points.iter().for_each(|x| features::append(&x[..dim], &network.frequencies, &mut input));
+    for axis in 0..dim {
+        points
+            .iter()
+            .for_each(|x| features::append_slopes(&x[..dim], &network.frequencies, axis, &mut change));
+    }
+    let [hidden @ .., last] = &network.layers;
+    let apply = |layer: &Layer, input: &[f32], rows: usize, bias: bool| {
+        let mut output = vec![0.0; rows * layer.outputs()];
+        match bias {
+            true => linear(layer, input, &mut output),
+            false => matrix(layer, input, &mut output),
+        }
+        output
+    };
+    for layer in hidden {
+        input = apply(layer, &input, n, true);
+        change = apply(layer, &change, n * dim, false);
+        for change in change.chunks_exact_mut(input.len()) {
+            change.iter_mut().zip(&input).filter(|(_, z)| **z <= 0.0).for_each(|(change, _)| *change = 0.0);
+        }
+        relu(&mut input);
+    }
+    let (logits, slopes) = (apply(last, &input, n, true), apply(last, &change, n * dim, false));
+    for (i, out) in out.chunks_exact_mut(m * (1 + dim)).enumerate() {
+        let of_axis = (0..dim).map(|axis| &slopes[m * (n * axis + i)..][..m]);
+        let parts = [&logits[m * i..][..m]].into_iter().chain(of_axis);
+        out.chunks_exact_mut(m).zip(parts).for_each(|(out, part)| out.copy_from_slice(part));
+    }
+}
+
 /// `output = input W^T + b`, one row a point.
 fn linear(layer: &Layer, input: &[f32], output: &mut [f32]) {
+    output.chunks_exact_mut(layer.outputs()).for_each(|row| row.copy_from_slice(&layer.bias));
+    matrix(layer, input, output);
+}
+
+/// `output += input W^T`.
+fn matrix(layer: &Layer, input: &[f32], output: &mut [f32]) {
     let (k, m) = (layer.inputs(), layer.outputs());
-    for row in output.chunks_exact_mut(m) {
-        row.copy_from_slice(&layer.bias);
-    }
     let transposed = View { data: &layer.weight, row: 1, column: k };
     multiply(output.len() / m, k, m, View { data: input, row: k, column: 1 }, transposed, 1.0, output);
 }

@@ -20,6 +20,24 @@ pub(super) fn append(x: &[f32], frequencies: &[f32], out: &mut Vec<f32>) {
     out.extend(frequencies.chunks_exact(x.len()).map(|row| angles(row).cos() as f32));
 }
 
+/// Appends the derivatives of the features of `x` by one of its coordinates.
+pub(super) fn append_slopes(x: &[f32], frequencies: &[f32], axis: usize, out: &mut Vec<f32>) {
+    out.extend((0..x.len()).map(|k| f32::from(u8::from(k == axis))));
+    let rows = || frequencies.chunks_exact(x.len());
+    let turn = |row: &[f32]| {
+        let turns: f64 = row.iter().zip(x).map(|(b, x)| f64::from(*b) * f64::from(*x)).sum();
+        ((std::f64::consts::TAU * turns).sin_cos(), std::f64::consts::TAU * f64::from(row[axis]))
+    };
+    out.extend(rows().map(|row| {
+        let ((_, cos), rate) = turn(row);
+        (cos * rate) as f32
+    }));
+    out.extend(rows().map(|row| {
+        let ((sin, _), rate) = turn(row);
+        (-sin * rate) as f32
+    }));
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

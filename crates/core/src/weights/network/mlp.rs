@@ -135,6 +135,25 @@ impl Network {
         }
         report(progress, 1.0)
     }
+
+    /// The logits of the points `x`, and after those of each point their derivatives by its normalised coordinates: n x (1 + d) x m. At a kink
+    /// those of a neuron that is off.
+    ///
+    /// # Errors
+    /// As [`Network::logits`]; [`Error::Memory`].
+    pub(crate) fn slopes(&self, x: &[f64], progress: &mut Progress<'_>) -> Result<Vec<f32>, Error> {
+        let (dim, m) = (self.parameters.dim, self.outputs());
+        let mut slopes = zeros(x.len() / dim * (1 + dim) * m)?;
+        if !self.parameters.frequencies.is_empty() || x.len() <= LEAF * dim {
+            check_points("x", x, dim)?;
+            dense::write_slopes(&self.parameters, x, &mut slopes, progress)?;
+        } else {
+            let tree = PointTree::new(x, dim, self.parameters.frame, &mut |done| progress(0.3 * done))?;
+            let progress = &mut |done| progress(0.3 + 0.7 * done);
+            piecewise::write_slopes(&self.parameters, &self.prepared, &tree, &mut slopes, progress)?;
+        }
+        Ok(slopes)
+    }
 }
 
 #[cfg(test)]

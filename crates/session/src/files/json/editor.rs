@@ -58,7 +58,7 @@ fn read(mut keys: Keys, notes: &mut Vec<String>) -> Result<(Settings, Option<&'s
     // The parameters of the kind that was not chosen were not used.
     let [neural, classic] = ["neural", "classic"].map(|kind| keys.shift_remove(kind));
     let (found, kind) = if kind == "neural" { (neural, "neural") } else { (classic, "inverse-distance") };
-    for key in ["weights", "handles", "relax"] {
+    for key in ["weights", "handles", "relax", "no_folds"] {
         pass_over(key, &mut keys, notes);
     }
     let mut parameters = found.map_or(Ok(Keys::new()), |found| object(&found, kind))?;

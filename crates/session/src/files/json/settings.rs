@@ -41,6 +41,9 @@ pub fn read_settings(mut keys: Keys) -> Result<(Settings, Keys), Error> {
     if let Some(found) = keys.shift_remove("relax") {
         settings.relax = share("relax", &found, "expected a number")?;
     }
+    if let Some(found) = keys.shift_remove("no_folds") {
+        settings.no_folds = flag("no_folds", &found)?;
+    }
     settings.check()?;
     rest.extend(keys);
     Ok((settings, rest))
@@ -129,6 +132,12 @@ pub fn share(name: &str, found: &Value, expected: &str) -> Result<f64, Error> {
             Err(Error::argument(message))
         }
     }
+}
+
+fn flag(name: &str, found: &Value) -> Result<bool, Error> {
+    found.as_bool().ok_or_else(|| {
+        Error::argument(format!("{name}: expected true or false, found {}", found_setting(found)))
+    })
 }
 
 /// One of these texts.

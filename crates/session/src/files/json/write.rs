@@ -104,6 +104,7 @@ pub(crate) fn settings_value(settings: &Settings) -> Value {
         "temperature": number(settings.temperature),
         "handles": handles,
         "relax": number(settings.relax),
+        "no_folds": settings.no_folds,
     })
 }
 

@@ -45,15 +45,21 @@ pub(crate) fn write_logits(
         return Ok(());
     }
     let whole = prepared.of(network);
-    let walk = Walk {
-        simd,
-        network,
-        whole: &whole,
-        tree,
-        order,
-        logits: SharedRows::new(logits, network.outputs()),
-    };
-    walk.all(progress)
+    let logits = SharedRows::new(logits, network.outputs());
+    Walk { simd, network, whole: &whole, tree, order, logits, slopes: false }.all(progress)
+}
+
+/// Writes the logits of the tree's points, and after those of each point their derivatives by its normalised coordinates: n x (1 + d) x m.
+pub(crate) fn write_slopes(
+    network: &Parameters,
+    prepared: &Prepared,
+    tree: &PointTree,
+    slopes: &mut [f32],
+    progress: &mut Progress<'_>,
+) -> Result<(), Error> {
+    let (whole, simd) = (prepared.of(network), Simd::detect());
+    let logits = SharedRows::new(slopes, network.outputs() * (1 + network.dim));
+    Walk { simd, network, whole: &whole, tree, order: Order::Given, logits, slopes: true }.all(progress)
 }
 
 struct Walk<'a> {
@@ -63,6 +69,8 @@ struct Walk<'a> {
     tree: &'a PointTree,
     order: Order,
     logits: SharedRows<'a>,
+    /// Whether their derivatives come after the logits of each point.
+    slopes: bool,
 }
 
 /// A node above those that are made from the whole network. It copies no rows: columns that are on in it are added to the rows'
@@ -239,6 +247,13 @@ impl Walk<'_> {
         // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
         let mut rows = rows.map(|row| unsafe { self.logits.row(row) });
         let mut logits: [&mut [f32]; LEAF] = std::array::from_fn(|_| rows.next().unwrap_or_default());
+        let mut slopes: [&mut [f32]; LEAF] = std::array::from_fn(|_| Default::default());
+        if self.slopes {
+            for (logits, slopes) in logits.iter_mut().zip(&mut slopes) {
+                let whole = std::mem::take(logits);
+                (*logits, *slopes) = whole.split_at_mut(self.network.outputs().min(whole.len()));
+            }
+        }
         let count = LEAF.min(self.tree.len() - first);
         let mut x = [[Aligned::ZERO; 3]; LEAF_BLOCKS];
         let x = &mut x[..count.div_ceil(WIDTH)];
@@ -246,13 +261,29 @@ impl Walk<'_> {
             *x = self.tree.block(first + WIDTH * block);
         }
         leaf::evaluate(self.simd, level, &self.whole.heads, x, neurons, &mut logits[..count]);
+        if self.slopes {
+            let mut change = Neurons::default();
+            for axis in 0..self.network.dim {
+                let mut along: [&mut [f32]; LEAF] = std::array::from_fn(|_| Default::default());
+                for (slopes, along) in slopes.iter_mut().zip(&mut along).take(count) {
+                    (*along, *slopes) = std::mem::take(slopes).split_at_mut(self.network.outputs());
+                }
+                let heads = &self.whole.heads;
+                leaf::differentiate(self.simd, level, heads, axis, neurons, &mut change, &mut along[..count]);
+            }
+        }
     }
 
     fn dense(&self, node: Node) {
         let first = node.first * LEAF;
         let places = first..(first + LEAF).min(self.tree.len());
         // SAFETY: no two places of the tree have the same row, and each leaf belongs to one task.
-        unsafe { dense::evaluate_places(self.network, self.tree, self.order, places, &self.logits) }
+        unsafe {
+            match self.slopes {
+                true => dense::differentiate_places(self.network, self.tree, places, &self.logits),
+                false => dense::evaluate_places(self.network, self.tree, self.order, places, &self.logits),
+            }
+        }
     }
 }
 

@@ -60,20 +60,57 @@ fn evaluate_body<L: Lanes>(
         (0..x.len()).for_each(|block| evaluate_neurons::<L, 1>(leaf, x, block, h, z));
     }
 
-    let terms = Terms { leaf, heads, x, hidden: h, rows: z };
-    for (group, output) in leaf.part.output.iter().enumerate() {
-        let output = loads::<L>(output);
-        let mut first = 0;
-        while first < logits.len() {
-            first += if L::REGISTERS >= 32 && first + MANY <= logits.len() {
-                terms.add_up::<L, MANY>(group, output, first, logits)
-            } else if first + FEW <= logits.len() {
-                terms.add_up::<L, FEW>(group, output, first, logits)
-            } else {
-                terms.add_up::<L, 1>(group, output, first, logits)
-            };
+    Terms { leaf, heads, x, hidden: h, rows: z }.all::<L>(true, logits);
+}
+
+multiversion! {
+    /// How the logits of a leaf's points, whose neurons [`evaluate`] left, change along an axis: writes that of each point into its row.
+    pub(super) fn differentiate(
+        leaf: &Level,
+        heads: &Heads,
+        axis: usize,
+        neurons: &Neurons,
+        change: &mut Neurons,
+        slopes: &mut [&mut [f32]],
+    ) = differentiate_body
+}
+
+#[inline(always)]
+fn differentiate_body<L: Lanes>(
+    leaf: &Level,
+    heads: &Heads,
+    axis: usize,
+    neurons: &Neurons,
+    change: &mut Neurons,
+    slopes: &mut [&mut [f32]],
+) {
+    let (columns, bounded) = (leaf.sorted.open.len, &leaf.bounded);
+    let zero = L::splat(0.0);
+    change.hidden.resize(columns.max(change.hidden.len()), NO_POINTS);
+    change.rows.resize(bounded.open.len().max(change.rows.len()), NO_POINTS);
+    let weights = leaf.part.columns.plane(axis);
+    for j in 0..columns {
+        for b in 0..slopes.len().div_ceil(WIDTH) {
+            let on = zero.less(L::load(&neurons.hidden[j][b].0));
+            change.hidden[j][b] = Aligned(L::select(on, L::splat(weights[j]), zero).store());
         }
     }
+    for (at, Row { panel, lane, .. }) in bounded.open.iter().enumerate() {
+        let (panel, lane) = (*panel as usize, *lane as usize % WIDTH);
+        let weights = &bounded.panel(panel)[..columns];
+        for b in 0..slopes.len().div_ceil(WIDTH) {
+            let mut sum = L::splat(bounded.affine[panel][axis].0[lane]);
+            for j in 0..columns {
+                sum = L::splat(weights[j].0[lane]).mul_add(L::load(&change.hidden[j][b].0), sum);
+            }
+            let on = zero.less(L::load(&neurons.rows[at][b].0));
+            change.rows[at][b] = Aligned(L::select(on, sum, zero).store());
+        }
+    }
+    let mut x = [[Aligned::ZERO; 3]; LEAF_BLOCKS];
+    x.iter_mut().for_each(|x| x[axis] = Aligned([1.0; WIDTH]));
+    Terms { leaf, heads, x: &x, hidden: &change.hidden[..columns], rows: &change.rows[..bounded.open.len()] }
+        .all::<L>(false, slopes);
 }
 
 /// The neurons at `B` blocks of points.
@@ -156,6 +193,27 @@ struct Terms<'a> {
 }
 
 impl Terms<'_> {
+    /// All outputs at all points; `whole`, or without what is the same everywhere.
+    #[inline(always)]
+    fn all<L: Lanes>(&self, whole: bool, logits: &mut [&mut [f32]]) {
+        for (group, output) in self.leaf.part.output.iter().enumerate() {
+            let mut output = loads::<L>(output);
+            if !whole {
+                output[3] = L::splat(0.0);
+            }
+            let mut first = 0;
+            while first < logits.len() {
+                first += if L::REGISTERS >= 32 && first + MANY <= logits.len() {
+                    self.add_up::<L, MANY>(group, output, first, logits)
+                } else if first + FEW <= logits.len() {
+                    self.add_up::<L, FEW>(group, output, first, logits)
+                } else {
+                    self.add_up::<L, 1>(group, output, first, logits)
+                };
+            }
+        }
+    }
+
     /// Outputs of one group at `P` points from `first` on, all of one block. Returns `P`.
     #[inline(always)]
     fn add_up<L: Lanes, const P: usize>(

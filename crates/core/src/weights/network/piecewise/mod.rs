@@ -70,7 +70,7 @@ mod part;
 mod rows;
 mod workspace;
 
-pub(super) use evaluate::write_logits;
+pub(super) use evaluate::{write_logits, write_slopes};
 pub(super) use layout::Prepared;
 
 #[cfg(test)]
