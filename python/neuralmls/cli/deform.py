@@ -202,6 +202,7 @@ def _bent(
     """Bend one shape, or undo that, and write it; what is to be told of it."""
     from neuralmls.cli import summary
 
+    maps: NDArray[np.float64] | None
     if inverse:
         with stages.stage("move") as report:
             positions, maps = _undone(shape, map, report)

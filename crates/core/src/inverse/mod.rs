@@ -185,7 +185,7 @@ impl<'a> Motion<'a> {
 
 /// The entry of matrices that change nothing.
 fn unit<const D: usize>(at: usize) -> f64 {
-    f64::from(u8::from(at % (D * D) % (D + 1) == 0))
+    f64::from(u8::from((at % (D * D)).is_multiple_of(D + 1)))
 }
 
 #[cfg(test)]

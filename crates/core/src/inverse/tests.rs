@@ -22,7 +22,7 @@ fn forward(motion: &Motion<'_>, x: &[f64]) -> Vec<f64> {
         let m = weights.control_points().len() / D;
         motion.with::<D, _>(|field| {
             let (mut relative, frame) = (vec![0.0; m], field.frame);
-            let mut moved = |x: &[f64]| -> [f64; D] {
+            let moved = |x: &[f64]| -> [f64; D] {
                 let logits: Vec<f64> = match weights {
                     Weights::InverseDistance(f) => f
                         .control_points()
@@ -62,7 +62,7 @@ fn forward(motion: &Motion<'_>, x: &[f64]) -> Vec<f64> {
                 let local = field.mls.deform(&frame.enter(x), &relative, dominant);
                 std::array::from_fn(|k| x[k] + frame.half * local.displacement[k])
             };
-            x.chunks_exact(D).flat_map(|x| moved(x)).collect()
+            x.chunks_exact(D).flat_map(moved).collect()
         })
     }
     match motion.weights.dim() {

@@ -23,7 +23,7 @@ use super::affine;
 use super::matrix::{apply, cholesky, identity, norm, solve, transposed, Matrix};
 use super::moments::Moments;
 use super::oriented::{self, Oriented};
-use super::rotation::{best_quaternion, best_rotation, of_quaternion, ANCHOR_WEIGHT};
+use super::rotation::{best_quaternion, best_rotation, of_quaternion, turned_by, ANCHOR_WEIGHT};
 use super::similarity;
 use crate::softmax::Dominant;
 
@@ -207,18 +207,6 @@ impl Arm {
         let scale = if self.place { scale } else { 1.0 };
         std::array::from_fn(|k| self.b[k] - scale * turned[k])
     }
-}
-
-/// The quaternion `(1, z)` times `u`, its length 1.
-pub(super) fn turned_by(&[w, x, y, z]: &[f64; 4], t: &[f64; 3]) -> [f64; 4] {
-    let u = [
-        w - t[0] * x - t[1] * y - t[2] * z,
-        x + t[0] * w + t[1] * z - t[2] * y,
-        y + t[1] * w + t[2] * x - t[0] * z,
-        z + t[2] * w + t[0] * y - t[1] * x,
-    ];
-    let length = u.iter().map(|c| c * c).sum::<f64>().sqrt();
-    u.map(|c| c / length)
 }
 
 fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {

@@ -74,6 +74,7 @@ impl<const D: usize> Mul for Dual<D> {
     type Output = Dual<D>;
 
     #[inline(always)]
+    #[allow(clippy::suspicious_arithmetic_impl)] // The product rule.
     fn mul(self, other: Dual<D>) -> Dual<D> {
         let slope = std::array::from_fn(|c| self.slope[c] * other.value + self.value * other.slope[c]);
         Dual { value: self.value * other.value, slope }

@@ -11,7 +11,6 @@
 //! eigenvector of a symmetric 4 x 4 matrix for its largest eigenvalue, which cyclic Jacobi rotations find to full
 //! precision relative to the gap, with no special cases.
 
-use super::global::turned_by;
 use super::matrix::{cholesky, norm, solve, Matrix};
 
 /// How much the global map counts against the local one, relative to its size: enough to decide what is open, too little to
@@ -239,4 +238,16 @@ pub(super) fn of_quaternion(&[w, x, y, z]: &[f64; 4]) -> [[f64; 3]; 3] {
         [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
         [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
     ]
+}
+
+/// The quaternion `(1, z)` times `u`, its length 1.
+pub(super) fn turned_by(&[w, x, y, z]: &[f64; 4], t: &[f64; 3]) -> [f64; 4] {
+    let u = [
+        w - t[0] * x - t[1] * y - t[2] * z,
+        x + t[0] * w + t[1] * z - t[2] * y,
+        y + t[1] * w + t[2] * x - t[0] * z,
+        z + t[2] * w + t[0] * y - t[1] * x,
+    ];
+    let length = u.iter().map(|c| c * c).sum::<f64>().sqrt();
+    u.map(|c| c / length)
 }

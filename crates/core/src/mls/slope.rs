@@ -136,9 +136,9 @@ impl<'a, const D: usize> Turning<'a, D> {
             (cross[0][1], cross[1][0]) = (-z, z);
         } else if let Some(lower) = &self.lower {
             let z = solve(lower, [ds[1][2] - ds[2][1], ds[2][0] - ds[0][2], ds[0][1] - ds[1][0]]);
-            for k in 0..3 {
+            for (k, z) in z.into_iter().enumerate() {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-                (cross[i][j], cross[j][i]) = (-z[k], z[k]);
+                (cross[i][j], cross[j][i]) = (-z, z);
             }
         }
         product(&cross, self.r)
