@@ -11,6 +11,7 @@
 //! | `aim` | the targets with which control points arrive |
 //! | `relax` | what control points leave open, decided by the shape's own stiffness |
 //! | `probe`, `advice` | a deformation looked at in places all over a shape; what is likely bad about it, and which setting would help |
+//! | [`symmetry`], [`place`] | the planes by which a shape is its own mirror image; control points at its ends and in its parts |
 //! | `geometry` | coordinates relative to a box, a kd-tree over points, [`placement`] of control points |
 //! | `machine` | wide registers, threads, [`memory`], [`progress`] |
 //!
@@ -27,9 +28,11 @@ mod error;
 mod geometry;
 mod machine;
 mod mls;
+pub mod place;
 mod probe;
 mod relax;
 pub mod softmax;
+pub mod symmetry;
 mod weights;
 
 pub use advice::{Advice, Better, Kind};

@@ -19,6 +19,7 @@ mod transform;
 
 pub use affine::RIDGE;
 pub use piece::{piece, Piece};
+pub(crate) use rotation::eigen;
 pub use rotation::{best_rotation, ANCHOR_WEIGHT};
 pub use transform::Transform;
 
