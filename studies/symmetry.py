@@ -19,7 +19,7 @@ TIMES = 3
 SHAPES = {
     "organic/human/human_neutral.obj": "symmetric",
     "organic/spot/spot_low_resolution.obj": "symmetric",
-    "organic/penguin/penguin.obj": "symmetric",
+    "organic/penguin/penguin.obj": "nearly",  # its head is turned
     "organic/fish/fish_low_resolution.obj": "symmetric",
     "organic/armadillo.obj": "no",
     "organic/bunny/bunny.obj": "no",

@@ -36,11 +36,11 @@ def symmetry(shape: Shape | ArrayLike, faces: ArrayLike | None = None) -> list[M
 
     Examples
     --------
-    >>> butterfly = [[-2, 1.0, 0], [2, 1, 0], [-1, -2, 0], [1, -2, 0], [-1, 0, 1], [1, 0, 1], [-2, 2, 3], [2, 2, 3]]
-    >>> symmetry(butterfly)[0].verdict
-    'symmetric'
-    >>> symmetry(butterfly)[0].normal.round(6).tolist()
-    [1.0, 0.0, 0.0]
+    >>> import numpy as np
+    >>> half = np.random.default_rng(0).uniform(0, 1, (500, 3))
+    >>> best = symmetry(np.concatenate([half, half * [-1, 1, 1]]))[0]
+    >>> best.verdict, best.normal.round(6).tolist()
+    ('symmetric', [1.0, 0.0, 0.0])
     """
     if isinstance(shape, Shape):
         if faces is not None:
