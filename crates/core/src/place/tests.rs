@@ -221,7 +221,10 @@ fn places_inside_are_in_the_middles_of_bars_and_stay_on_sheets() {
     for x in found.iter().filter(|x| ENDS.iter().all(|end| squared(x, end) > 0.3 * 0.3)) {
         let from_axis = [[x[1], x[2]], [x[0], x[2]]].map(|[a, b]| a.hypot(b));
         // On the surface it would be 0.1 to 0.14; the medial axis of a square reaches into its corners.
-        assert!(from_axis[0].min(from_axis[1]) < 0.075, "{x:?} is not in the middle of a bar as thick as 0.2");
+        assert!(
+            from_axis[0].min(from_axis[1]) < 0.075,
+            "{x:?} is not in the middle of a bar as thick as 0.2"
+        );
     }
     let sheet =
         (vec![0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 4.0, 3.0, 0.0, 0.0, 3.0, 0.0], vec![[0, 1, 2], [0, 2, 3]]);
