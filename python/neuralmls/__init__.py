@@ -25,11 +25,12 @@ if TYPE_CHECKING:
     from neuralmls.handles import Aim, ExactHandles, Soft
     from neuralmls.orientations import Orientation
     from neuralmls.pipeline import deform
-    from neuralmls.placement import farthest_of, farthest_points
+    from neuralmls.placement import MirrorPlane, Placed, farthest_of, farthest_points, place
     from neuralmls.point_tree import PointTree
     from neuralmls.report import Advice, Report
     from neuralmls.session import Map, Session
     from neuralmls.shape import Shape, read
+    from neuralmls.symmetries import symmetry
     from neuralmls.weights import InverseDistanceWeights, NeuralWeights, ShapeAwareWeights, Weights
     from neuralmls.weights.softmax import softmax
 
@@ -44,10 +45,12 @@ __all__ = [
     "FileError",
     "InverseDistanceWeights",
     "Map",
+    "MirrorPlane",
     "NeuralMLSError",
     "NeuralWeights",
     "NotApplicable",
     "Orientation",
+    "Placed",
     "PointTree",
     "Report",
     "Session",
@@ -60,8 +63,10 @@ __all__ = [
     "deform",
     "farthest_of",
     "farthest_points",
+    "place",
     "read",
     "softmax",
+    "symmetry",
 ]
 
 # Which module has which name. They are imported when first asked for: `neuralmls --help` need not wait for numpy.
@@ -77,10 +82,12 @@ _HOMES = {
     "FileError": "errors",
     "InverseDistanceWeights": "weights",
     "Map": "session",
+    "MirrorPlane": "placement",
     "NeuralMLSError": "errors",
     "NeuralWeights": "weights",
     "NotApplicable": "errors",
     "Orientation": "orientations",
+    "Placed": "placement",
     "PointTree": "point_tree",
     "Report": "report",
     "Session": "session",
@@ -92,8 +99,10 @@ _HOMES = {
     "deform": "pipeline",
     "farthest_of": "placement",
     "farthest_points": "placement",
+    "place": "placement",
     "read": "shape",
     "softmax": "weights.softmax",
+    "symmetry": "symmetries",
 }
 
 

@@ -180,6 +180,11 @@ class ControlPoints:
         """Whether each is locked, (m,)."""
         return _fixed(self._core.locked)
 
+    @property
+    def mirror_of(self) -> tuple[str | None, ...]:
+        """Whose mirror image each is; None for those that are nobody's."""
+        return tuple(self._core.mirror_of)
+
     def grouped(self, names: Sequence[str], group: str | None) -> ControlPoints:
         """Return the same control points, the named ones in a group, or with None in none.
 

@@ -42,8 +42,8 @@ def test_points_are_named_placed_on_the_shape_and_the_same_for_the_same_seed(run
     shape = nm.read("shape.obj")
     assert points.names == ("p1", "p2", "p3", "p4", "p5")
     np.testing.assert_array_equal(points.sources, points.targets)
-    expected = nm.farthest_points(shape.positions, shape.faces, 5, seed=4)
-    np.testing.assert_array_equal(points.sources, expected)
+    expected = nm.place(shape.positions, shape.faces, 5, seed=4).points
+    np.testing.assert_array_equal(points.sources, expected.sources)
     first = (here / name).read_bytes()
     ran = run("points", "shape.obj", "--count", "5", "-o", name, "--seed", "4")
     assert (ran.code, "--force" in ran.err) == (2, True)
@@ -56,6 +56,23 @@ def test_points_default_to_twelve_and_say_how_to_go_on(run):
     assert len(nm.ControlPoints.read("new.json")) == 12
     tried = ran.out[ran.out.index("deform ") :].split()
     assert run(*tried).code == 0  # the command that it says to try
+
+
+def test_points_in_pairs_inside_and_as_many_as_make_a_difference(run, here):
+    assert run("sample", "airplane", "-o", "plane.obj", "-q").code == 0
+    told = json.loads(run("inspect", "plane.obj", "--json").out)
+    assert told["symmetry"][0]["verdict"] == "symmetric"
+    assert "by the plane across (1, 0, 0) at 0" in run("inspect", "plane.obj").out
+    ran = run("points", "plane.obj", "-o", "pairs.json", "--symmetric", "--inside", "--count", "auto")
+    assert (ran.code, "of the size from the nearest" in ran.out) == (0, True)
+    points = nm.ControlPoints.read("pairs.json")
+    assert sum(twin is not None for twin in points.mirror_of) >= 2
+    uneven = "v 0 0 0\nv 3 0 0\nv 0.4 1.9 0\nv 0.9 0.3 1.1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n"
+    (here / "uneven.obj").write_text(uneven)
+    ran = run("points", "uneven.obj", "-o", "none.json", "--symmetric")
+    assert (ran.code, "not its own mirror image" in ran.err) == (2, True)
+    ran = run("points", "shape.obj", "-o", "none.json", "--count", "some")
+    assert (ran.code, "or auto, found some" in ran.err) == (2, True)
 
 
 @pytest.mark.parametrize("name", ["chair", "airplane", "car", "table"])

@@ -13,6 +13,7 @@
 //! | `compose` | many small maps, one after the other, that fold nothing |
 //! | `relax` | what control points leave open, decided by the shape's own stiffness |
 //! | `probe`, `advice` | a deformation looked at in places all over a shape; what is likely bad about it, and which setting would help |
+//! | [`symmetry`], [`place`] | the planes by which a shape is its own mirror image; control points at its ends and in its parts |
 //! | `geometry` | coordinates relative to a box, a kd-tree over points, [`placement`] of control points |
 //! | `machine` | wide registers, threads, [`memory`], [`progress`] |
 //!
@@ -31,9 +32,11 @@ mod geometry;
 mod inverse;
 mod machine;
 mod mls;
+pub mod place;
 mod probe;
 mod relax;
 pub mod softmax;
+pub mod symmetry;
 mod weights;
 
 pub use advice::{Advice, Better, Kind};

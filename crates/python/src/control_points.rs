@@ -182,6 +182,11 @@ impl ControlPoints {
     }
 
     #[getter]
+    fn mirror_of(&self) -> Vec<Option<&str>> {
+        self.0.iter().map(|point| point.mirror_of.as_deref()).collect()
+    }
+
+    #[getter]
     fn locked<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
         PyArray1::from_iter(py, self.0.iter().map(|point| point.locked))
     }

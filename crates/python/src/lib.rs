@@ -25,7 +25,7 @@ mod _core {
     #[pymodule_export]
     use crate::handles::Handles;
     #[pymodule_export]
-    use crate::placement::{farthest_of, farthest_points, sample_surface};
+    use crate::placement::{farthest_of, farthest_points, mirror_planes, place_points, sample_surface};
     #[pymodule_export]
     use crate::report::Report;
     #[pymodule_export]

@@ -1,10 +1,12 @@
 //! Control points spread over a shape.
 
-use neuralmls_core::placement;
+use neuralmls_core::place::{self, Count, Wish};
+use neuralmls_core::{placement, symmetry};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays::table;
+use crate::control_points::{raised, ControlPoints};
 use crate::errors::from_core;
 use crate::progress::run;
 
@@ -47,4 +49,44 @@ pub(crate) fn sample_surface<'py>(
     let (faces, _) = faces.as_slice()?.as_chunks::<3>();
     let places = py.detach(|| placement::sample_surface(x, dim, faces, count, seed));
     table(py, places.map_err(|error| from_core(error, None))?, dim)
+}
+
+/// Control points at the ends of a shape and in its parts, `count` or (None) as many as make a difference; by the plane of symmetry
+/// that was used, and, where the number is found, each number with what it costs.
+#[pyfunction]
+pub(crate) fn place_points<'py>(
+    py: Python<'py>,
+    x: PyReadonlyArray2<'py, f64>,
+    faces: PyReadonlyArray2<'py, u32>,
+    count: Option<usize>,
+    symmetric: bool,
+    inside: bool,
+    seed: u64,
+) -> PyResult<(ControlPoints, Option<Plane>, Vec<(usize, f64)>)> {
+    let (dim, x) = (x.shape()[1], x.as_slice()?);
+    let (faces, _) = faces.as_slice()?.as_chunks::<3>();
+    let wish = Wish { count: count.map_or(Count::Auto, Count::Of), symmetric, inside, seed };
+    let placed = run(py, None, |report| place::place(x, dim, faces, &wish, report))?;
+    let points = neuralmls_session::ControlPoints::placed(&placed, dim).map_err(raised)?;
+    Ok((ControlPoints(points), placed.plane.map(|plane| told(&plane)), placed.curve))
+}
+
+/// Normal, offset, score, matched, verdict.
+type Plane = ([f64; 3], f64, f64, f64, &'static str);
+
+/// The planes by which points n x d and triangles f x 3 of them may be symmetric, the best first.
+#[pyfunction]
+pub(crate) fn mirror_planes(
+    py: Python<'_>,
+    x: PyReadonlyArray2<'_, f64>,
+    faces: PyReadonlyArray2<'_, u32>,
+) -> PyResult<Vec<Plane>> {
+    let (dim, x) = (x.shape()[1], x.as_slice()?);
+    let (faces, _) = faces.as_slice()?.as_chunks::<3>();
+    let planes = py.detach(|| symmetry::planes(x, dim, faces)).map_err(|error| from_core(error, None))?;
+    Ok(planes.iter().map(told).collect())
+}
+
+fn told(plane: &symmetry::Plane) -> Plane {
+    (plane.normal, plane.offset, plane.score, plane.matched, plane.verdict.word())
 }

@@ -12,6 +12,7 @@ mod axes;
 mod check;
 mod fit;
 mod hold;
+mod placed;
 
 pub use hold::Posed;
 

@@ -1,4 +1,4 @@
-"""`neuralmls points`: control points spread over a shape, to start from."""
+"""`neuralmls points`: control points placed on a shape, to start from."""
 
 from __future__ import annotations
 
@@ -14,34 +14,43 @@ from neuralmls.cli import console, inputs, options, outputs
 @click.command()
 @options.shape
 @options.output("The control-point file to write, .json or .csv.")
-@click.option("--count", type=int, default=12, help="How many.")
-@click.option("--seed", type=int, default=0, help="Of the samples of the surface.")
+@click.option("--count", default="12", help="How many, or auto: as many as make much of a difference.")
+@click.option("--symmetric", is_flag=True, help="In exact pairs, p1.L and p1.R, by the shape's plane of symmetry.")
+@click.option("--inside", is_flag=True, help="In the middle of their parts, not on the surface.")
+@click.option("--seed", type=int, default=0, help="Of what is drawn at random.")
 @options.quiet
 @options.force
-def points(*, shape: Path, output: Path, count: int, seed: int, quiet: bool, force: bool) -> None:
-    """Spread control points over a shape, to start from.
+def points(
+    *, shape: Path, output: Path, count: str, symmetric: bool, inside: bool, seed: int, quiet: bool, force: bool
+) -> None:
+    """Place control points on a shape, to start from.
 
-    Each is as far from the others as can be. Rename them and set their targets in the file,
-    or move them with: neuralmls deform --move
+    The ends of the shape come first, then the middles of its parts. Rename them and set their
+    targets in the file, or move them with: neuralmls deform --move
     """
     outputs.check_ending(output, ("json", "csv"), "a file of control points")
     outputs.check_output(output, force=force, inputs=[shape])
 
     from neuralmls.arrays import as_count
-    from neuralmls.control_points import ControlPoints
-    from neuralmls.placement import farthest_points
+    from neuralmls.errors import ArgumentError
+    from neuralmls.placement import place
 
     as_count("seed", seed, 0, 2**64 - 1)
-    as_count("count", count, 1, 1000)
+    if count != "auto" and not count.lstrip("-").isdecimal():
+        raise ArgumentError(f"count: expected a whole number from 1 to 1000, or auto, found {count}")
+    number = None if count == "auto" else as_count("count", int(count), 1, 1000)
     source = inputs.read_shape(shape)
-    placed = ControlPoints(farthest_points(source.positions, source.faces, count, seed=seed))
-    placed.write(output)
+    placed = place(source.positions, source.faces, number, symmetric=symmetric, inside=inside, seed=seed)
+    names = placed.points.names
+    placed.points.write(output)
     if quiet:
         return
-    console.line(f"{output}: {count} control points, {placed.names[0]} to {placed.names[-1]}", sys.stdout)
-    zeros = ",0" * (placed.dimension - 1)
+    for many, far in placed.curve:
+        console.line(f"{many} control points: {100 * far:.1f} % of the size from the nearest, in the mean", sys.stdout)
+    console.line(f"{output}: {len(names)} control points, {names[0]} to {names[-1]}", sys.stdout)
+    zeros = ",0" * (placed.points.dimension - 1)
     console.line(
         f"Try: neuralmls deform {quote(str(shape))} --points {quote(str(output))} -o moved{shape.suffix} "
-        f"--move p1={inputs.longest_side(source) / 5:.2g}{zeros}",
+        f"--move {names[0]}={inputs.longest_side(source) / 5:.2g}{zeros}",
         sys.stdout,
     )

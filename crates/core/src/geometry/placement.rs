@@ -189,15 +189,15 @@ fn squared_distance(a: &Position, b: &Position) -> f64 {
 }
 
 /// The faces that have area.
-struct Surface<'a> {
+pub(crate) struct Surface<'a> {
     points: &'a [Position],
-    faces: Vec<[u32; 3]>,
+    pub(crate) faces: Vec<[u32; 3]>,
     /// The area of each face and those before it.
     sums: Vec<f64>,
 }
 
 impl<'a> Surface<'a> {
-    fn new(points: &'a [Position], all: &[[u32; 3]]) -> Result<Option<Surface<'a>>, Error> {
+    pub(crate) fn new(points: &'a [Position], all: &[[u32; 3]]) -> Result<Option<Surface<'a>>, Error> {
         let n = points.len();
         if let Some(face) = all.iter().find(|face| face.iter().any(|&corner| corner as usize >= n)) {
             let found = face.map(|corner| corner.to_string()).join(", ");
@@ -230,6 +230,11 @@ impl<'a> Surface<'a> {
 
     /// A place on the surface, each as likely as another.
     fn sample(&self, random: &mut Random) -> Position {
+        self.sample_in(random).1
+    }
+
+    /// The same, with the number of its face.
+    pub(crate) fn sample_in(&self, random: &mut Random) -> (usize, Position) {
         let at = random.unit() * self.sums[self.sums.len() - 1];
         let face = self.sums.partition_point(|&sum| sum <= at).min(self.faces.len() - 1);
         let [a, b, c] = self.faces[face].map(|corner| self.points[corner as usize]);
@@ -237,7 +242,7 @@ impl<'a> Surface<'a> {
         if s + t > 1.0 {
             (s, t) = (1.0 - s, 1.0 - t);
         }
-        std::array::from_fn(|k| a[k] + s * (b[k] - a[k]) + t * (c[k] - a[k]))
+        (face, std::array::from_fn(|k| a[k] + s * (b[k] - a[k]) + t * (c[k] - a[k])))
     }
 }
 

@@ -21,7 +21,7 @@ mod transform;
 
 pub use affine::RIDGE;
 pub use piece::{piece, Piece};
-pub(crate) use rotation::best_quaternion;
+pub(crate) use rotation::{best_quaternion, eigen};
 pub use rotation::{best_rotation, ANCHOR_WEIGHT};
 pub use transform::Transform;
 

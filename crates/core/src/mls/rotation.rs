@@ -174,17 +174,17 @@ fn horn<const D: usize>(s: &Matrix<D>) -> [[f64; 4]; 4] {
 }
 
 /// Cyclic Jacobi: plane rotations that zero the off-diagonal, accumulated. The eigenvalues, and the eigenvectors in columns.
-fn eigen(mut n: [[f64; 4]; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
+pub(crate) fn eigen<const N: usize>(mut n: [[f64; N]; N]) -> ([f64; N], [[f64; N]; N]) {
     /// Jacobi converges quadratically: a 4 x 4 matrix is done after 4 to 6 sweeps.
     const MOST_SWEEPS: usize = 24;
-    let mut vectors = [[0.0; 4]; 4];
+    let mut vectors = [[0.0; N]; N];
     for (i, row) in vectors.iter_mut().enumerate() {
         row[i] = 1.0;
     }
     for _ in 0..MOST_SWEEPS {
         let mut rotated = false;
-        for i in 0..3 {
-            for j in i + 1..4 {
+        for i in 0..N - 1 {
+            for j in i + 1..N {
                 let off = n[i][j];
                 // Too small to change either diagonal entry, twice over.
                 if off.abs() <= 1e-18 * (n[i][i].abs() + n[j][j].abs()) {
@@ -199,7 +199,7 @@ fn eigen(mut n: [[f64; 4]; 4]) -> ([f64; 4], [[f64; 4]; 4]) {
                 n[j][j] += t * off;
                 n[i][j] = 0.0;
                 n[j][i] = 0.0;
-                for k in 0..4 {
+                for k in 0..N {
                     if k != i && k != j {
                         let (ki, kj) = (n[k][i], n[k][j]);
                         n[k][i] = cos * ki - sin * kj;

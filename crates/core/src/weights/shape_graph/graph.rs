@@ -58,6 +58,24 @@ pub(super) fn links_of(x: &[Position], faces: &[[u32; 3]]) -> Links {
     in_cells(&links)
 }
 
+/// How much of the surface the largest connected component has, 0 to 1; 1 without faces.
+pub(crate) fn largest_piece(x: &[Position], faces: &[[u32; 3]]) -> f64 {
+    let (nodes, faces) = merged(x, faces);
+    let (components, count) = connected(faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c]]), nodes.len());
+    let mut pieces = vec![0.0; count];
+    components
+        .iter()
+        .zip(areas(&nodes, &faces))
+        .for_each(|(&component, area)| pieces[component as usize] += area);
+    let (largest, all) =
+        pieces.iter().fold((0.0, 0.0), |(largest, all): (f64, f64), area| (largest.max(*area), all + area));
+    if all > 0.0 {
+        largest / all
+    } else {
+        1.0
+    }
+}
+
 /// Links of the points of a cloud to their nearest.
 fn neighbours(nodes: &[Position], loose: &[u32]) -> Vec<[u32; 2]> {
     let positions: Vec<Position> = loose.iter().map(|&node| nodes[node as usize]).collect();

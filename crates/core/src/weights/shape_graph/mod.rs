@@ -23,17 +23,19 @@ mod paths;
 mod walks;
 
 pub(crate) use coarse::coarse;
+pub(crate) use graph::largest_piece;
 pub(crate) use labels::{check_shape, fit};
 pub use labels::{labels, Labels, Shape};
 
-pub(crate) use near::Near;
+pub(crate) use near::{Found, Near};
+pub(crate) use paths::Ordered;
 
 pub(crate) type Position = [f64; 3];
 
 /// Side of a cell, in halves of the shape's longest side.
 const CELL: f64 = 0.02;
 
-fn squared(a: &Position, b: &Position) -> f64 {
+pub(crate) fn squared(a: &Position, b: &Position) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 

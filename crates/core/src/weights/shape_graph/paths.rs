@@ -137,7 +137,7 @@ fn shorter(best: &mut [(f64, u32); 2], way: (f64, u32)) -> bool {
 
 /// A finite distance, as a queue orders it.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) struct Ordered(pub(super) f64);
+pub(crate) struct Ordered(pub(crate) f64);
 
 impl Eq for Ordered {}
 
