@@ -70,7 +70,7 @@ def test_what_does_not_fold_stays_as_it_was_to_the_bit(weights):
 def test_steps_are_undone():
     map = fitted(dragged(0.2))
     y = map.at(X)
-    assert np.abs(map.inverse(y) - X).max() < 1e-8
+    assert np.abs(map.inverse(y) - X).max() < 1e-7  # logits of points are of single precision
     far = nm.ControlPoints(P, P + 10 * np.ones(3))
     assert fitted(far).report().steps == 1
 
@@ -113,7 +113,7 @@ def test_a_fit_tells_how_far_it_is_and_can_be_stopped():
 def test_the_command_line_says_how_many_steps(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     write_obj(CHAIR, Path("chair.obj"))
-    nm.Session(dragged(0.2), weights="inverse-distance").save("points.json")
+    nm.Session(dragged(0.2), weights="inverse-distance").write("points.json")
     assert main(["deform", "chair.obj", "--points", "points.json", "-o", "bent.obj", "--no-folds", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["no_folds"] is True

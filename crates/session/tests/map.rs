@@ -167,7 +167,7 @@ fn steps_are_undone() {
     let x = places();
     let y = map.at(&x, &mut |_| true).unwrap();
     let back = map.inverse(&y, false, &mut |_| true).unwrap();
-    assert!(back.points.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-8));
+    assert!(back.points.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-7)); // logits of points are of single precision
 }
 
 #[test]

@@ -114,7 +114,7 @@ fn where_one_step_folds_nothing_it_is_that_one_to_the_bit() {
 }
 
 #[test]
-fn the_way_begins_at_rest_ends_at_the_targets_and_keeps_its_distance_from_the_axis() {
+fn the_way_begins_at_rest_ends_at_the_targets_and_stays_away_from_the_axis() {
     let (p, q) = (rings(7), twisted(&rings(7), 360.0));
     let motion = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
     let path = path::Path::<3>::new(&p, Pose::from(&q), None, &motion);
@@ -125,7 +125,9 @@ fn the_way_begins_at_rest_ends_at_the_targets_and_keeps_its_distance_from_the_ax
         let half = path.leg(&p, 0.0, t).targets;
         for place in half.chunks_exact(3) {
             let radius = place[1].hypot(place[2]);
-            assert!((radius - 0.5f64.sqrt()).abs() < 0.15, "{radius} at {t}");
+            // On a straight line the middle would meet on the axis.
+            let part = radius / 0.5f64.sqrt();
+            assert!((0.6..1.1).contains(&part), "{part} at {t}");
         }
     }
 }
