@@ -82,8 +82,8 @@ class MirrorPlane:
 
     @classmethod
     def _of(cls, core: tuple[tuple[float, float, float], float, float, float, str], dimension: int) -> Self:
-        normal, *rest = core
-        return cls(np.array(normal[:dimension]), *rest)
+        normal, offset, score, matched, verdict = core
+        return cls(np.array(normal[:dimension]), offset, score, matched, verdict)
 
     def image(self, points: ArrayLike) -> NDArray[np.float64]:
         """Return the mirror images of points (n, d): `x - 2 (n . x - o) n`."""
