@@ -82,8 +82,8 @@ class MirrorPlane:
 
     @classmethod
     def _of(cls, core: tuple[tuple[float, float, float], float, float, float, str], dimension: int) -> Self:
-        normal, *rest = core
-        return cls(np.array(normal[:dimension]), *rest)
+        normal, offset, score, matched, verdict = core
+        return cls(np.array(normal[:dimension]), offset, score, matched, verdict)
 
     def image(self, points: ArrayLike) -> NDArray[np.float64]:
         """Return the mirror images of points (n, d): `x - 2 (n . x - o) n`."""
@@ -117,7 +117,6 @@ def place(
     count: int | None = None,
     *,
     symmetric: bool = False,
-    inside: bool = False,
     seed: int = 0,
 ) -> Placed:
     """Place control points where a person would: at the ends of a shape, and in the middles of its parts.
@@ -134,8 +133,6 @@ def place(
         Without it, as many as make much of a difference. More than 128 are spread by `farthest_points`.
     symmetric : bool
         In exact pairs: the shape has to be symmetric (`symmetry`).
-    inside : bool
-        In the middle of the part that each is on, rather than on its surface.
     seed : int, 0 to 2^64 - 1
         The same seed gives the same points.
 
@@ -160,7 +157,7 @@ def place(
         raise ArgumentError("positions: expected at least one point, found none")
     number = None if count is None else as_count("count", count, 1, MOST)
     start = as_count("seed", seed, 0, SEEDS)
-    core, plane, curve = _core.place_points(x, as_indices(faces, len(x)), number, symmetric, inside, start)
+    core, plane, curve = _core.place_points(x, as_indices(faces, len(x)), number, symmetric, start)
     used = None if plane is None else MirrorPlane._of(plane, x.shape[1])
     return Placed(ControlPoints._of(core), used, curve)
 

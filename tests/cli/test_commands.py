@@ -58,12 +58,12 @@ def test_points_default_to_twelve_and_say_how_to_go_on(run):
     assert run(*tried).code == 0  # the command that it says to try
 
 
-def test_points_in_pairs_inside_and_as_many_as_make_a_difference(run, here):
+def test_points_in_pairs_and_as_many_as_make_a_difference(run, here):
     assert run("sample", "airplane", "-o", "plane.obj", "-q").code == 0
     told = json.loads(run("inspect", "plane.obj", "--json").out)
     assert told["symmetry"][0]["verdict"] == "symmetric"
     assert "by the plane across (1, 0, 0) at 0" in run("inspect", "plane.obj").out
-    ran = run("points", "plane.obj", "-o", "pairs.json", "--symmetric", "--inside", "--count", "auto")
+    ran = run("points", "plane.obj", "-o", "pairs.json", "--symmetric", "--count", "auto")
     assert (ran.code, "of the size from the nearest" in ran.out) == (0, True)
     points = nm.ControlPoints.read("pairs.json")
     assert sum(twin is not None for twin in points.mirror_of) >= 2

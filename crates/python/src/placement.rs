@@ -60,16 +60,18 @@ pub(crate) fn place_points<'py>(
     faces: PyReadonlyArray2<'py, u32>,
     count: Option<usize>,
     symmetric: bool,
-    inside: bool,
     seed: u64,
-) -> PyResult<(ControlPoints, Option<Plane>, Vec<(usize, f64)>)> {
+) -> PyResult<(ControlPoints, Option<Plane>, Curve)> {
     let (dim, x) = (x.shape()[1], x.as_slice()?);
     let (faces, _) = faces.as_slice()?.as_chunks::<3>();
-    let wish = Wish { count: count.map_or(Count::Auto, Count::Of), symmetric, inside, seed };
+    let wish = Wish { count: count.map_or(Count::Auto, Count::Of), symmetric, seed };
     let placed = run(py, None, |report| place::place(x, dim, faces, &wish, report))?;
     let points = neuralmls_session::ControlPoints::placed(&placed, dim).map_err(raised)?;
     Ok((ControlPoints(points), placed.plane.map(|plane| told(&plane)), placed.curve))
 }
+
+/// Each number of control points with what it costs.
+type Curve = Vec<(usize, f64)>;
 
 /// Normal, offset, score, matched, verdict.
 type Plane = ([f64; 3], f64, f64, f64, &'static str);

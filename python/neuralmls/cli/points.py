@@ -16,13 +16,10 @@ from neuralmls.cli import console, inputs, options, outputs
 @options.output("The control-point file to write, .json or .csv.")
 @click.option("--count", default="12", help="How many, or auto: as many as make much of a difference.")
 @click.option("--symmetric", is_flag=True, help="In exact pairs, p1.L and p1.R, by the shape's plane of symmetry.")
-@click.option("--inside", is_flag=True, help="In the middle of their parts, not on the surface.")
 @click.option("--seed", type=int, default=0, help="Of what is drawn at random.")
 @options.quiet
 @options.force
-def points(
-    *, shape: Path, output: Path, count: str, symmetric: bool, inside: bool, seed: int, quiet: bool, force: bool
-) -> None:
+def points(*, shape: Path, output: Path, count: str, symmetric: bool, seed: int, quiet: bool, force: bool) -> None:
     """Place control points on a shape, to start from.
 
     The ends of the shape come first, then the middles of its parts. Rename them and set their
@@ -40,7 +37,7 @@ def points(
         raise ArgumentError(f"count: expected a whole number from 1 to 1000, or auto, found {count}")
     number = None if count == "auto" else as_count("count", int(count), 1, 1000)
     source = inputs.read_shape(shape)
-    placed = place(source.positions, source.faces, number, symmetric=symmetric, inside=inside, seed=seed)
+    placed = place(source.positions, source.faces, number, symmetric=symmetric, seed=seed)
     names = placed.points.names
     placed.points.write(output)
     if quiet:

@@ -6,7 +6,6 @@
 //! extremities  feet, wing tips: there the mean distance to all the rest is greatest; at most two thirds of the control points
 //! medoids      the others, so that the way along the shape from anywhere to the nearest is short in the mean
 //! folded       the same on half of a shape, for control points in exact pairs
-//! inside       from the surface to the middle of the part
 //! ```
 //!
 //! What differs from [`placement::farthest_points`]: distances are along the shape, and a control point is in the middle of what it is to move.
@@ -17,7 +16,6 @@ mod board;
 mod extremities;
 mod folded;
 mod hidden;
-mod inside;
 mod medoids;
 mod snap;
 #[cfg(test)]
@@ -27,13 +25,12 @@ use crate::error::Error;
 use crate::geometry::{placement, Frame};
 use crate::machine::progress::{report, Progress};
 use crate::machine::random::Random;
-use crate::symmetry::{self, Mirror, Plane, Samples, Verdict};
+use crate::symmetry::{self, Mirror, Plane, Verdict};
 use crate::weights::shape_graph::{check_shape, largest_piece, Position, Shape};
 use along::Along;
 use board::Board;
 use extremities::extremities;
 use folded::folded;
-use inside::middle;
 use medoids::{medoids, Choice, Kind};
 use snap::{snap, Snapped};
 
@@ -62,8 +59,6 @@ pub struct Wish {
     pub count: Count,
     /// In exact pairs, by the shape's plane of symmetry.
     pub symmetric: bool,
-    /// In the middle of their parts rather than on one side.
-    pub inside: bool,
     /// Of what is drawn at random.
     pub seed: u64,
 }
@@ -135,8 +130,7 @@ pub fn place(
         let points = placement::farthest_points(x, dim, faces, count, wish.seed, progress)?;
         return Ok(Placed { mirror_of: vec![None; points.len() / dim], points, plane, curve });
     };
-    let samples = if wish.inside { Some(Samples::new(&entered, faces, dim)?) } else { None };
-    let shape = OfShape { x, dim, faces, entered: &entered, frame: &frame, along: &along, samples };
+    let shape = OfShape { x, dim, faces, entered: &entered, frame: &frame, along: &along };
     Ok(shape.placed(&chosen, plane, curve))
 }
 
@@ -210,8 +204,6 @@ struct OfShape<'a> {
     entered: &'a [Position],
     frame: &'a Frame,
     along: &'a Along,
-    /// To find the middles of parts by, where that is wished.
-    samples: Option<Samples>,
 }
 
 impl OfShape<'_> {
@@ -240,15 +232,12 @@ impl OfShape<'_> {
         Placed { points, mirror_of, plane, curve }
     }
 
-    /// On the shape or in the middle of a part, in its own coordinates.
+    /// On the shape, in its own coordinates.
     fn world(&self, node: &Position) -> Vec<f64> {
-        let snapped = snap(self.entered, self.faces, node);
-        let place = match (snapped, &self.samples) {
-            (Snapped::Vertex(vertex), None) => return self.x[self.dim * vertex..][..self.dim].to_vec(),
-            (Snapped::Vertex(vertex), Some(samples)) => middle(samples, &self.entered[vertex]),
-            (Snapped::Place(place), Some(samples)) => middle(samples, &place),
-            (Snapped::Place(place), None) => place,
-        };
-        (0..self.dim).map(|k| self.frame.centre[k] + self.frame.half * place[k]).collect()
+        let frame = self.frame;
+        match snap(self.entered, self.faces, node) {
+            Snapped::Vertex(vertex) => self.x[self.dim * vertex..][..self.dim].to_vec(),
+            Snapped::Place(place) => (0..self.dim).map(|k| frame.centre[k] + frame.half * place[k]).collect(),
+        }
     }
 }

@@ -24,8 +24,7 @@ use crate::mls::eigen;
 use crate::weights::shape_graph::Position;
 pub(crate) use mirror::{dot, unit, Mirror};
 use refine::{away, refined};
-use samples::moments;
-pub(crate) use samples::Samples;
+use samples::{moments, Samples};
 
 /// Directions of candidates: across the grid points of a cube of so many to each side, in the plane of a square.
 const GRID: i32 = 2;

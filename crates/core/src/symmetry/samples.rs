@@ -17,18 +17,18 @@ const AROUND: usize = 8;
 const BLOCK: usize = 500;
 
 /// Places of a shape.
-pub(crate) struct Samples {
+pub(super) struct Samples {
     pub(super) mirrored: Vec<Position>,
-    pub(crate) targets: Vec<Position>,
+    pub(super) targets: Vec<Position>,
     /// Of the surface at the targets; zeros where there is none.
-    pub(crate) normals: Vec<Position>,
-    pub(crate) near: Near,
+    pub(super) normals: Vec<Position>,
+    pub(super) near: Near,
     /// Median and 90th percentile of how far what is not mirrored is from the nearest target.
     pub(super) floor: [f64; 2],
 }
 
 impl Samples {
-    pub(crate) fn new(x: &[Position], faces: &[[u32; 3]], dim: usize) -> Result<Samples, Error> {
+    pub(super) fn new(x: &[Position], faces: &[[u32; 3]], dim: usize) -> Result<Samples, Error> {
         let mut random = Random::new(0);
         let (mirrored, targets, normals, own) = match Surface::new(x, faces)? {
             Some(surface) => {
