@@ -9,7 +9,7 @@ use crate::text::general;
 use crate::words::{percent, place};
 use crate::{Error, HandlesSetting, Map, Session, WeightsSettings};
 
-/// Neurons of the networks after the first step: as good as wider ones there (studies/folds.py).
+/// Neurons of the networks after the first step, of which a search fits many: narrow for their time.
 const WIDTH: usize = 128;
 
 impl Session {

@@ -13,7 +13,7 @@ use crate::weights::Weights;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// What `|d_i - d_j| / |h_i - h_j|` of a step may be, of all pairs of control points: what predicts a fold (studies/folds.py).
+/// What `|d_i - d_j| / |h_i - h_j|` of a step may be, of all pairs of control points: what predicts a fold.
 const STRAIN: f64 = 0.4;
 /// The least `det J` that a step may have at the places of the search.
 const LEAST: f64 = 0.3;
