@@ -5,7 +5,8 @@ use neuralmls_core::{Better, Kind, Look, Pose, Probe, Stiff, Transform};
 
 use serde_json::{json, Value};
 
-use crate::report::{short_of, ARRIVED};
+use crate::map::ARRIVED;
+use crate::report::short_of;
 use crate::text::{general, quoted};
 use crate::words::{at_temperature, distance, percent, place};
 use crate::{Error, HandlesSetting, Map};

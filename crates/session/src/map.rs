@@ -7,8 +7,10 @@ use neuralmls_core::{
     Shape, Soft, Trained, Transform, Watched, Weights,
 };
 
-use crate::report::ARRIVED;
 use crate::{Bounds, Error, HandlesSetting, Session};
+
+/// A control point that is farther from where it was to go than this part of the longest side has not arrived.
+pub(crate) const ARRIVED: f64 = 1e-6;
 
 /// Control points, the weights that were fitted to them, and what is set: where each point of space goes.
 ///

@@ -225,11 +225,12 @@ fn parse(bytes: &[u8]) -> Result<Parsed<'_>, Error> {
     let said: Value = metadata
         .and_then(|text| serde_json::from_str(text).ok())
         .ok_or_else(|| broken("its metadata has no neuralmls-map"))?;
-    if ![VERSION, WITH_STEPS].iter().any(|version| said["version"].as_u64() == Some(*version)) {
-        let found = crate::text::shown(&said["version"].to_string());
-        return Err(broken(&format!("version: expected {VERSION} or {WITH_STEPS}, found {found}")));
-    }
     let arrays = Arrays { tensors, of: String::new() };
+    let expected = if arrays.has("step0_targets") { WITH_STEPS } else { VERSION };
+    if said["version"].as_u64() != Some(expected) {
+        let found = crate::text::shown(&said["version"].to_string());
+        return Err(broken(&format!("version: expected {expected}, found {found}")));
+    }
     let weights = weights(&arrays, said["weights"].as_str())?;
     Ok(Parsed { arrays, weights, said })
 }

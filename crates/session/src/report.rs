@@ -4,6 +4,7 @@ use neuralmls_core::{softmax, Aim, Composed, Soft, Weights};
 
 use serde_json::json;
 
+use crate::map::ARRIVED;
 use crate::text::{general, listed, names, quoted};
 use crate::words::{distance, percent, remedy_in_words};
 use crate::{ControlPoints, Error, HandlesSetting, Map, WeightsSettings};
@@ -13,8 +14,6 @@ const OWNED: f64 = 0.85;
 /// A network that did not learn so much of the shape. On 34 manufactured shapes and five animals with 12 control points it is at most 0.007,
 /// with 40 at most 0.019 (studies/shape_aware_law.py).
 const MISSED: f64 = 0.02;
-/// A control point that is farther from where it was to go than this part of the longest side has not arrived.
-pub(crate) const ARRIVED: f64 = 1e-6;
 /// A file whose numbers are farther apart than this part of the longest move does not hold the motion.
 const HELD: f64 = 0.01;
 

@@ -15,6 +15,7 @@ from typing import Any, Literal
 
 from neuralmls import ControlPoints, Session
 
+OTHERS = ("kind", "weights", "handles", "relax", "no_folds")  # of a session, that methods are not varied by
 Kind = Literal["neural", "shape-aware", "inverse-distance"]
 
 OURS = "(ours)"  # in the titles of what is not in the paper: docs/notes/beyond-the-paper.md
@@ -46,7 +47,7 @@ def own(settings: Mapping[str, Any]) -> dict[str, Any]:
     {'seed': 0, 'transform': 'rigid', 'temperature': 1}
     """
     flat = {**settings.get("weights", {}), **settings}
-    return {name: value for name, value in flat.items() if name not in ("kind", "weights", "handles", "relax")}
+    return {name: value for name, value in flat.items() if name not in OTHERS}
 
 
 def title_of(settings: Mapping[str, Any]) -> str:
